@@ -30,7 +30,7 @@ void HeldMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
   kept_.fill(std::nullopt);
   for (const AxisCounts& each : task->rests_on) {
     if (each.slot < ILK_SLOTS && !moves(each.slot)) {
-      keep(each.slot, each.counts);
+      kept_[each.slot] = each.counts;
     }
   }
 }
@@ -41,9 +41,22 @@ void HeldMode::end(std::uint32_t task, TaskReason reason, std::uint32_t tick) no
   }
 }
 
-void HeldMode::await_confirmation(std::uint32_t tick) noexcept {
-  set_phase(TaskPhase::paused, TaskReason::unconfirmed, 0, tick);
-  idle_since_ = tick;
+void HeldMode::await_confirmation(const ilk_snapshot_t& snapshot) noexcept {
+  idle_since_ = snapshot.state.system.tick;
+  set_phase(TaskPhase::paused, TaskReason::unconfirmed, 0, idle_since_);
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (moves(slot)) {
+      kept_[slot] = snapshot.state.axis[slot].position_counts;
+    }
+  }
+}
+
+void HeldMode::let_move(std::uint32_t axes) noexcept {
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (((axes >> slot) & 1u) != 0) {
+      kept_[slot].reset();
+    }
+  }
 }
 
 /** A pedal that is held may have been pressed before anybody had looked. */

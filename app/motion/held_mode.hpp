@@ -51,10 +51,11 @@ class HeldMode : public Mode {
 
   /** Aborts the task because of the axis in `slot`. */
   void fail(TaskReason reason, std::uint32_t code, std::uint32_t slot, std::uint32_t tick) noexcept;
-  /** What comes next needs a confirmation: until then no press goes on. */
-  void await_confirmation(std::uint32_t tick) noexcept;
-  /** The axis in `slot` has come to its place, and has to stay there while others move. */
-  void keep(std::uint32_t slot, std::int32_t counts) noexcept { kept_[slot] = counts; }
+  /** What comes next needs a confirmation: until then no press goes on. What somebody looks at and confirms
+   * is where the axes of the task stand now, and each has to stay there until it may move. */
+  void await_confirmation(const ilk_snapshot_t& snapshot) noexcept;
+  /** These axes, bit n for slot n, need not stay where they stand. */
+  void let_move(std::uint32_t axes) noexcept;
   /** It was carried out. */
   void finish(TaskReason reason, std::uint32_t tick) noexcept { set_phase(TaskPhase::done, reason, 0, tick); }
   void set_step(std::uint32_t step) noexcept { status_.step = step; }

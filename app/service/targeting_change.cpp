@@ -57,12 +57,12 @@ bool leads_elsewhere(Targeting before, const Targeting& after) {
   return before != after;
 }
 
-/** What moves the robot in the scanner moves the patient, too: points of before are elsewhere. */
-Targeting without_points(Targeting targeting) {
-  targeting.entry_point.reset();
-  targeting.target_point.reset();
-  targeting.planned_targets.clear();
-  return targeting;
+Problem former_point() {
+  return {.status = Status::conflict,
+          .code = "NO_TARGET",
+          .detail = "It has an entry or a target of before the table moved.",
+          .expected = "points of images that were made since",
+          .next_step = "Plan on new images, or set them in the console if they still hold."};
 }
 
 Problem no_case(const std::string& problem) {
@@ -103,6 +103,10 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
         if (after.targeting && make == with_registration && origin.source == TaskSource::openigtlink &&
             is_repeated(transaction, *after.targeting)) {
           return {fail(repeated(before)), false};
+        }
+        if (after.targeting && origin.source == TaskSource::openigtlink &&
+            returns_to_former_point(before, *after.targeting)) {
+          return {fail(former_point()), false};
         }
         if (after.targeting) {
           after.targeting = judged(std::move(*after.targeting), in_force);

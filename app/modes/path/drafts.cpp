@@ -1,6 +1,8 @@
 #include "service/drafts.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <string_view>
 
 #include "proposals/programs.hpp"
@@ -124,6 +126,28 @@ DraftKind::Reading read_coordinated(const Context& context, json body, std::stri
   co_return coordinated_of(body, context.robot, author);
 }
 
+/** 409 NOT_ALIGNED when one of the axes that a treatment does not move stands elsewhere than at its target.
+ */
+std::optional<Problem> not_aligned(const Context& context, const Alignment& alignment, std::uint32_t moved) {
+  const ControlView view = context.view();
+  std::string elsewhere;
+  for (const auto& [slot, counts, clamped] : alignment.setpoints) {
+    const std::int64_t now = view.snapshot.state.axis[slot].position_counts;
+    if (((moved >> slot) & 1u) == 0 &&
+        std::abs(now - counts) > rest_tolerance_counts(context.config.axis[slot])) {
+      elsewhere += (elsewhere.empty() ? "" : ", ") + context.robot.at_slot(slot)->title;
+    }
+  }
+  if (elsewhere.empty()) {
+    return std::nullopt;
+  }
+  return Problem{.status = Status::conflict,
+                 .code = "NOT_ALIGNED",
+                 .detail = "These axes do not stand where entry and target ask: " + elsewhere + ".",
+                 .expected = "a robot that is aligned with its target",
+                 .next_step = "Line the robot up by a proposal of kind pose, then propose it again."};
+}
+
 /** A treatment: at the target by the registration, for as long as the robot stands there. */
 DraftKind::Reading read_ablation(const Context& context, json body, std::string author) {
   auto task = ablation_of(body, context.robot, author);
@@ -135,21 +159,21 @@ DraftKind::Reading read_ablation(const Context& context, json body, std::string 
   if (!targeting) {
     co_return fail(targeting.error());
   }
-  if (const auto setup = pose_setup(context.robot, *targeting); !setup) {
-    co_return fail(Problem{.status = Status::conflict,
-                           .code = setup.error().at("code"),
-                           .detail = setup.error().at("text"),
-                           .expected = "an open case with a valid registration",
-                           .next_step = "Set the registration, align the robot with the target, and propose "
-                                        "it again."});
+  const auto alignment = co_await aligned(context, *targeting);
+  if (!alignment) {
+    co_return fail(alignment.error());
   }
-  if (!targeting->target_point) {
-    co_return fail(Problem{.status = Status::conflict,
-                           .code = "NO_TARGET",
-                           .detail = "The target is not set.",
-                           .expected = "a target with which the robot was aligned",
-                           .next_step = "Set entry and target, align the robot, and propose it again."});
+  const bool was_accepted = std::ranges::any_of(context.registry.newest_first(), [&](const Proposal& each) {
+    return each.state == ProposalState::done && each.task->aim && each.task->targeting_revision == revision;
+  });
+  const auto miss = was_accepted ? std::nullopt : out_of_reach(context.robot, *alignment);
+  if (miss) {
+    co_return fail(*miss);
   }
+  if (const auto elsewhere = not_aligned(context, *alignment, task->work.as<PathTask>().program->mask())) {
+    co_return fail(*elsewhere);
+  }
+  task->aim = ReachedAim{alignment->desired, alignment->reachable};
   task->targeting_revision = revision;
   task->rests_on = standing(context.robot, context.view());
   co_return task;

@@ -44,6 +44,9 @@ std::optional<Setpoint> PathMode::setpoint(std::uint32_t slot) const noexcept {
 /** Begins the leg, or goes on with it after a pause. */
 void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
+  for (std::size_t leg = status().step; leg < program().legs.size(); ++leg) {
+    let_move(mask_of(program().legs[leg]));
+  }
   std::array<double, ILK_SLOTS> velocities{};
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     velocities[slot] = trackers_[slot].velocity_counts_per_s();
@@ -128,24 +131,9 @@ void PathMode::end_leg(const ilk_snapshot_t& snapshot) noexcept {
   const PathLeg& next = program().legs[status().step];
   walk_.take(next);
   if (const auto* move = std::get_if<MoveLeg>(&next); move != nullptr && move->needs_confirmation) {
-    keep_places(snapshot);
-    await_confirmation(now);
+    await_confirmation(snapshot);
   } else {
     begin(snapshot);
-  }
-}
-
-/** What somebody looks at and confirms is where the axes came to, and it has to be so while others move. */
-void PathMode::keep_places(const ilk_snapshot_t& snapshot) noexcept {
-  std::uint32_t still = 0;
-  for (std::size_t leg = 0; leg < program().legs.size(); ++leg) {
-    const std::uint32_t moved = mask_of(program().legs[leg]);
-    still = leg < status().step ? still | moved : still & ~moved;
-  }
-  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (((still >> slot) & 1u) != 0) {
-      keep(slot, snapshot.state.axis[slot].position_counts);
-    }
   }
 }
 

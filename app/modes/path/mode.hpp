@@ -34,7 +34,6 @@ class PathMode final : public HeldMode {
   void drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
   void settle(const ilk_snapshot_t& snapshot) noexcept;
   void end_leg(const ilk_snapshot_t& snapshot) noexcept;
-  void keep_places(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool strays(const ilk_snapshot_t& snapshot) noexcept;
   /** Whether the leg that runs moves the axis in `slot`. */
   [[nodiscard]] bool leg_moves(std::uint32_t slot) const noexcept {

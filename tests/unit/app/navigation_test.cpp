@@ -59,6 +59,18 @@ class NavigationTest : public HttpTest {
     return next_answer();
   }
 
+  /** Sends a pose under a name that was not sent before, and gives its answer. */
+  std::string send_pose(const std::string& prefix, const igtl::Matrix& pose) {
+    const std::string name = prefix + std::to_string(++sent_poses_);
+    EXPECT_TRUE(program_->send(name, igtl::Transform{pose}, soon()).has_value());
+    return next_answer();
+  }
+
+  std::string calibrate(float x_mm) {
+    return send_pose("CLB_", {1, 0, 0, x_mm, 0, 1, 0, -185, 0, 0, 1, -73});
+  }
+
+  int sent_poses_ = 0;
   std::unique_ptr<igtl::Client> program_ = std::make_unique<igtl::Client>();
 };
 
@@ -153,19 +165,40 @@ TEST_F(NavigationTest, TheAuditNamesWhoseProgramStoppedTheRobotAndWhoEndedAPropo
   EXPECT_EQ(json::parse(ended[0].detail)["author"], "edna");
 }
 
+TEST_F(NavigationTest, AProgramCannotSendATargetOfBeforeTheTableMoved) {
+  become_controller();
+  EXPECT_EQ(ask("START_UP"), "START_UP 1");
+  const auto registered_at = [this](float x_mm) {
+    request("CALIBRATION");
+    ASSERT_EQ(calibrate(x_mm), "CALIBRATION 1");
+    ASSERT_EQ(ask("TARGETING"), "TARGETING 1");
+  };
+  const auto aim = [this](float x_mm) {
+    return send_pose("TGT_", {1, 0, 0, x_mm, 0, 0, -1, 15, 0, 1, 0, -13});
+  };
+  registered_at(-18.0f);
+  EXPECT_EQ(aim(-10.0f), "TARGET 1");
+  EXPECT_EQ(aim(-11.0f), "TARGET 1");
+  EXPECT_EQ(aim(-10.0f), "TARGET 1") << "nothing has moved";
+  ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
+  registered_at(-25.0f);
+  EXPECT_NE(aim(-10.0f), "TARGET 1");
+  EXPECT_NE(aim(-10.05f), "TARGET 1") << "rounded";
+  EXPECT_EQ(json::parse(get("/api/targeting").body)["target_point"], json());
+  EXPECT_EQ(aim(-16.0f), "TARGET 1") << "a new one";
+  ASSERT_EQ(post("/api/targeting/registration/expire", "{}").status, 200u);
+  registered_at(-21.0f);
+  EXPECT_NE(aim(-10.0f), "TARGET 1") << "however often it moved since";
+  ASSERT_EQ(
+      put("/api/targeting/target", R"({"entry_point":[-10,65,-13],"target_point":[-10,15,-13]})").status,
+      200u);
+  EXPECT_EQ(aim(-10.0f), "TARGET 1") << "a person has said that it holds";
+}
+
 TEST_F(NavigationTest, AProgramCannotRenewARegistrationThatHasExpired) {
   become_controller();
   EXPECT_EQ(ask("START_UP"), "START_UP 1");
   request("CALIBRATION");
-  auto calibrate = [this, id = 0](float x_mm) mutable {
-    igtl::Matrix pose = igtl::Transform{}.matrix;
-    pose[3] = x_mm;
-    pose[7] = -185.0f;
-    pose[11] = -73.0f;
-    const std::string name = "CLB_" + std::to_string(++id);
-    EXPECT_TRUE(program_->send(name, igtl::Transform{pose}, soon()).has_value());
-    return next_answer();
-  };
   const auto state = [this] { return json::parse(get("/api/targeting").body)["registration_state"]; };
   EXPECT_EQ(calibrate(5.0f), "CALIBRATION 1");
   EXPECT_EQ(state(), "valid");

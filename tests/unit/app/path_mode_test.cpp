@@ -141,7 +141,7 @@ TEST_P(PathModeOnThePlant, WhatNeedsAConfirmationBeginsWithThePressAfterIt) {
 }
 
 TEST_P(PathModeOnThePlant, NothingIsInsertedBesideWhatSomebodyLookedAt) {
-  for (const std::int32_t counts : {2, 15}) {
+  for (const auto& [pushed, counts] : {std::pair{lateral, 2}, {lateral, 15}, {test::insertion, 15}}) {
     ClosedLoop loop(11, GetParam());
     loop.make_all_ready();
     loop.give(1, test::along(aligned_then_inserted()));
@@ -150,8 +150,8 @@ TEST_P(PathModeOnThePlant, NothingIsInsertedBesideWhatSomebodyLookedAt) {
     }
     loop.confirm(1);
     loop.pedal(false);
-    const std::int32_t aligned = loop.state().axis[lateral].position_counts;
-    loop.happen(plant::command::PushAxis{lateral, -400 + counts - aligned});
+    const std::int32_t past_goal = pushed == lateral ? -400 - loop.state().axis[lateral].position_counts : 0;
+    loop.happen(plant::command::PushAxis{pushed, past_goal + counts});
     loop.run(100);
     loop.pedal(true);
     for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
@@ -161,7 +161,7 @@ TEST_P(PathModeOnThePlant, NothingIsInsertedBesideWhatSomebodyLookedAt) {
       expect_done(loop.path());
     } else {
       EXPECT_EQ(loop.path().reason, TaskReason::moved_away);
-      EXPECT_EQ(loop.path().slot, lateral);
+      EXPECT_EQ(loop.path().slot, pushed);
       EXPECT_LT(loop.state().axis[test::insertion].position_counts, 100);
     }
   }

@@ -21,6 +21,21 @@ class PathRoutesTest : public HttpTest {
     view.tasks.of<PathTask>() = {proposal, phase, TaskReason::arrived, 0, 0};
     show(view);
   }
+
+  void aim_at(const std::string& points) { ASSERT_EQ(put("/api/targeting/target", points).status, 200u); }
+
+  /** All axes as entry and target ask, as far as they go. */
+  void stand_as_aligned() {
+    const json alignment = json::parse(get("/api/targeting/alignment").body)["alignment"];
+    for (const auto& [name, setpoint] : alignment["setpoints"].items()) {
+      const std::uint32_t slot = test::neuro().find(name)->slot;
+      const std::int32_t now = view_.snapshot.state.axis[slot].position_counts;
+      test::move(view_, slot, setpoint["counts"].get<std::int32_t>() - now);
+    }
+    show(view_);
+  }
+
+  ControlView view_ = test::ready_view();
 };
 
 constexpr const char* short_trajectory = "time [s],yaw [rad]\n0,-0.5\n2,-0.7\n";
@@ -240,7 +255,11 @@ TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
   EXPECT_EQ(propose({{"kind", "ablation"}, {"steps", steps}}).problem()["code"], "NO_REGISTRATION");
   register_robot();
   EXPECT_EQ(propose({{"kind", "ablation"}, {"steps", steps}}).problem()["code"], "NO_TARGET");
-  ASSERT_EQ(put("/api/targeting/target", R"({"target_point":[5,200,60]})").status, 200u);
+  aim_at(R"({"entry_point":[8,250,70],"target_point":[5,200,60]})");
+  const json elsewhere = propose({{"kind", "ablation"}, {"steps", steps}}).problem();
+  EXPECT_EQ(elsewhere["code"], "NOT_ALIGNED");
+  EXPECT_NE(elsewhere["detail"].get<std::string>().find("Yaw"), std::string::npos) << elsewhere;
+  stand_as_aligned();
   const Answered made = propose({{"kind", "ablation"}, {"steps", steps}});
   ASSERT_EQ(made.status, 201u) << made.body;
   const json body = json::parse(made.body);
@@ -263,6 +282,23 @@ TEST_F(PathRoutesTest, AblationTurnsAndInsertsTheProbeThroughItsSteps) {
     EXPECT_EQ(refused.status, 422u) << bad;
     EXPECT_EQ(refused.problem()["field"], field) << bad;
   }
+}
+
+TEST_F(PathRoutesTest, AtATargetOutOfReachNothingIsTreatedUnlessSomebodyAcceptedTheMiss) {
+  const json ablation{{"kind", "ablation"},
+                      {"steps", json::array({{{"probe_rotation", 0.5}, {"insertion", 10}, {"dwell_s", 1}}})}};
+  register_robot();
+  aim_at(R"({"entry_point":[60,245,60],"target_point":[60,205,60]})");
+  stand_as_aligned();
+  EXPECT_EQ(propose(ablation).problem()["code"], "UNREACHABLE");
+  ASSERT_EQ(
+      propose({{"kind", "pose"}, {"pose", "reachable"}, {"accepted_mm", 500}, {"accepted_deg", 90}}).status,
+      201u);
+  EXPECT_EQ(propose(ablation).problem()["code"], "UNREACHABLE") << "it was not aligned yet";
+  view_.tasks.of<PathTask>() = {1, TaskPhase::done, TaskReason::arrived, 0, 0};
+  show(view_);
+  EXPECT_EQ(proposal(1)["state"], "done");
+  EXPECT_EQ(propose(ablation).status, 201u);
 }
 
 TEST_F(PathRoutesTest, DrapingGoesToTheSetpointsOfTheFile) {
