@@ -30,6 +30,7 @@
 #include "build_info/build_info.hpp"
 #include "history/history_feed.hpp"
 #include "http/server.hpp"
+#include "igtl/stop_scout.hpp"
 #include "interlock/kernel.h"
 #include "log/log.hpp"
 #include "motion/control_loop.hpp"
@@ -350,6 +351,10 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   if (const auto let_in = let_somebody_in(store); !let_in) {
     return tl::make_unexpected("--state " + options.state_directory + ": " + let_in.error().message());
   }
+  igtl::StopScout scout(door.get_executor(), [&] { channel->stop(); });
+  api.navigation().server().on_socket = [&](int socket, const std::weak_ptr<const void>& connection) {
+    scout.watch(socket, connection);
+  };
   ControlLoop control(options.link_socket, make_modes(plan), LinkageWatch(model.robot), *channel, &history,
                       options.replay ? LinkUse::replay : LinkUse::control);
   const std::jthread control_thread([&](const std::stop_token& stop) {

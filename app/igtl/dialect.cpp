@@ -10,6 +10,8 @@ Capability capabilities() {
            "STT_TDATA", "STP_TDATA"}};
 }
 
+}  // namespace
+
 std::optional<StopName> stop_name(std::string_view device) {
   const std::string name = lower(device);
   if (name == "stop") {
@@ -18,7 +20,17 @@ std::optional<StopName> stop_name(std::string_view device) {
   return name == "emergency" ? std::optional(StopName::emergency) : std::nullopt;
 }
 
-}  // namespace
+bool may_ask_to_stop(std::string_view device) {
+  const std::string name = lower(device);
+  return name == "mode" || name == "state_command" || name.starts_with("cmd_");
+}
+
+bool asks_to_stop(const Message& message) {
+  const auto* text = std::get_if<Text>(&message.body);
+  const std::string asked = text == nullptr ? "" : lower(text->text);
+  return stop_name(message.device) ||
+         (may_ask_to_stop(message.device) && (asked == "stop" || asked == "emergency" || asked == "pause"));
+}
 
 Reaction Dialect::take(const Message& message, const RobotState& state, bool controls) {
   const auto name = stop_name(message.device);

@@ -81,6 +81,15 @@ struct Reaction {
 /** Names of messages that stop the robot, whatever their type and content. */
 enum class StopName : std::uint8_t { stop, emergency };
 
+/** Which of them it is, in upper or lower case; nothing when it is none. */
+std::optional<StopName> stop_name(std::string_view device);
+
+/** Whether a text under that name is a request of some dialect, be it for a STOP. */
+bool may_ask_to_stop(std::string_view device);
+
+/** Whether it stops the robot in some dialect, by its name or by its text. */
+bool asks_to_stop(const Message& message);
+
 /** Names and order of messages: what a message asks for, and how state and answers are told. */
 class Dialect {
  public:

@@ -182,6 +182,7 @@ asio::awaitable<void> IgtlServer::keep_connected(Tcp::endpoint peer, std::chrono
 asio::awaitable<void> IgtlServer::serve(SessionPointer session) {
   const auto listed = sessions_.insert(sessions_.end(), session);
   spdlog::info("OpenIGTLink connection {} of {}", session->peer.id, session->peer.address);
+  on_socket(session->socket.native_handle(), session);
   launch(session->socket.get_executor(), write(session));
   on_open(session->peer.id);
   co_await read(session);
@@ -391,6 +392,7 @@ void IgtlServer::close(Session& session, const std::string& reason) {
   session.open = false;
   session.reason = reason;
   error_code ignored;
+  session.socket.shutdown(Tcp::socket::shutdown_both, ignored);  // whoever else holds the socket
   session.socket.close(ignored);
   session.news.cancel();
   session.pause.cancel();

@@ -130,6 +130,9 @@ class IgtlServer {
 
   /** Told of each connection, its messages, those that are skipped, and its end with the reason. */
   std::function<void(PeerId)> on_open = [](PeerId) {};
+  /** Told before that of the socket, which may be looked at for as long as the connection lives. */
+  std::function<void(int, std::weak_ptr<const void>)> on_socket = [](int, const std::weak_ptr<const void>&) {
+  };
   std::function<void(PeerId, const Message&)> on_message = [](PeerId, const Message&) {};
   std::function<void(PeerId, const Header&, const FaultAt&)> on_refused = [](PeerId, const Header&,
                                                                              const FaultAt&) {};

@@ -53,6 +53,11 @@ bool AxisTracker::arrived(const ilk_snapshot_t& snapshot, const PathPoint& point
   return rest_.rests(position, plan_.rules.noise_counts, snapshot.state.system.tick);
 }
 
+bool AxisTracker::stays(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept {
+  return distance(snapshot.state.axis[slot_].position_counts, rounded(point.now.position_counts)) <=
+         rest_tolerance_counts(plan_.rules);
+}
+
 void AxisTracker::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const PathPoint& point,
                        KernelRequests& requests) noexcept {
   const ilk_axis_t& axis = snapshot.state.axis[slot_];

@@ -35,6 +35,9 @@ class AxisTracker {
   /** Whether the axis rests within the deadband of the point, which is the end of its path. */
   [[nodiscard]] bool arrived(const ilk_snapshot_t& snapshot, const PathPoint& point) noexcept;
 
+  /** Whether an axis that has arrived there stands there still, whatever the noise of its counter. */
+  [[nodiscard]] bool stays(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept;
+
   /** Requests for what follows the path from here. */
   void hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const PathPoint& point,
             KernelRequests& requests) noexcept;

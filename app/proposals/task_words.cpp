@@ -55,7 +55,8 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
     case TaskReason::link_lost:
       return "The link to the kernel was lost.";
     case TaskReason::waited_too_long:
-      return "It waited for 60 s for the pedal, or for a new press of it; propose it again.";
+      return "It waited too long: 60 s for the pedal or a new press of it, or 10 minutes for its "
+             "confirmation; propose it again.";
     case TaskReason::not_homed:
       return axis + " is not homed, so it cannot go to a position. Home it first.";
     case TaskReason::verdict_lost:

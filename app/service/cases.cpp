@@ -247,14 +247,6 @@ Stored<Outcome> remove(Transaction& transaction, Step& step) {
   return as_outcome(case_json(*kept, step.look));
 }
 
-/** From now on that case is in force; 0: none. What belonged to another one ends. */
-void put_in_force(const Context& context, std::int64_t number, const std::string& by) {
-  if (std::exchange(context.in_force.open_case, number) != 0) {
-    context.trajectory = {};
-  }
-  context.registry.enter_case(number, by);
-}
-
 template <typename Work>
 CaseAnswer answer(const Context& context, Work work) {
   auto done = co_await context.store.run(std::move(work));
@@ -279,6 +271,13 @@ CaseAnswer take_out_of_force(const Context& context, Taking ending) {
 }
 
 }  // namespace
+
+void put_in_force(const Context& context, std::int64_t number, const std::string& by) {
+  if (std::exchange(context.in_force.open_case, number) != 0) {
+    context.trajectory = {};
+  }
+  context.registry.enter_case(number, by);
+}
 
 CaseAnswer list_cases(const Context& context) {
   auto list = [look = Look(context)](Store& store) {

@@ -28,6 +28,9 @@ CaseAnswer list_cases(const Context& context);
 /** Schema `CaseExport`; 404 NOT_FOUND. */
 CaseAnswer export_case(const Context& context, std::int64_t number);
 
+/** From now on that case is in force, by whom; 0: none. What belonged to another one ends. */
+void put_in_force(const Context& context, std::int64_t number, const std::string& by);
+
 // What people do with a case. Each answers schema `Case`, as it is then, and is audited without what people
 // wrote: label and notes can be deleted. 404 NOT_FOUND; 409 CASE when its state does not allow it; 401 LOGIN
 // and 409 CONTROL when the caller has lost session or control meanwhile; 503 STORE.

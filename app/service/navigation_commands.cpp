@@ -119,6 +119,14 @@ asio::awaitable<Done> load_poses(const Context& context, const Caller& caller, i
   if (!targeting) {
     co_return fail(targeting.error());
   }
+  std::vector<Point> points;
+  for (const igtl::TimedPose& each : poses.poses) {
+    points.push_back(
+        {each.scanner_from_treatment[3], each.scanner_from_treatment[7], each.scanner_from_treatment[11]});
+  }
+  if (const auto ours = co_await check_points(context, std::move(points)); !ours) {
+    co_return fail(ours.error());
+  }
   auto work = [poses = std::move(poses), targeting = *targeting, robot = &context.robot] {
     return trajectory_of(*robot, targeting, poses);
   };

@@ -166,40 +166,6 @@ json planned_json(const std::vector<PlannedTarget>& planned) {
   return list;
 }
 
-/** One number after the other. */
-json listed(const std::vector<Point>& points) {
-  std::vector<double> numbers;
-  for (const Point& point : points) {
-    numbers.insert(numbers.end(), point.begin(), point.end());
-  }
-  return numbers;
-}
-
-/** What `listed` wrote. */
-std::vector<Point> read_points(Fields& fields, const std::string& name) {
-  const json* list = fields.value(name);
-  const std::vector<double> numbers =
-      fields.numbers(name, list == nullptr ? 0 : list->size() / 3 * 3).value_or(std::vector<double>{});
-  std::vector<Point> points;
-  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) {
-    points.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
-  }
-  return points;
-}
-
-std::vector<Point> points_of(const Targeting& targeting) {
-  std::vector<Point> points;
-  for (const auto& point : {targeting.entry_point, targeting.target_point}) {
-    if (point) {
-      points.push_back(*point);
-    }
-  }
-  for (const PlannedTarget& each : targeting.planned_targets) {
-    points.insert(points.end(), {each.entry_point, each.target_point});
-  }
-  return points;
-}
-
 void read_offsets(Fields& fields, Targeting& targeting) {
   for (const Offset& offset : offsets) {
     if (const auto value = fields.number(offset.name, -largest_offset_mm, largest_offset_mm)) {
@@ -278,7 +244,6 @@ json to_json(const Targeting& targeting) {
   body["override_reason"] = or_nothing(targeting.override_reason);
   body.erase("registration_epoch");
   body.erase("registration_expired");
-  body.erase("former_points");
   return body;
 }
 
@@ -294,7 +259,6 @@ json to_stored(const Targeting& targeting) {
             {"entry_point", or_null(targeting.entry_point)},
             {"target_point", or_null(targeting.target_point)},
             {"planned_targets", planned_json(targeting.planned_targets)},
-            {"former_points", listed(targeting.former_points)},
             {"reported_position", or_null(targeting.reported_position)}};
   for (const Offset& offset : offsets) {
     body[offset.name] = targeting.*offset.value;
@@ -322,7 +286,6 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   targeting.entry_point = read_point(fields, "entry_point");
   targeting.target_point = read_point(fields, "target_point");
   targeting.planned_targets = read_planned(fields, "planned_targets");
-  targeting.former_points = read_points(fields, "former_points");
   targeting.reported_position = read_pose(fields, "reported_position");
   read_offsets(fields, targeting);
   return unless_wrong(fields, targeting);
@@ -411,29 +374,17 @@ tl::expected<Targeting, Problem> without_target(Targeting targeting, const json&
   return targeting;
 }
 
-Targeting without_points(Targeting targeting) {
-  constexpr std::size_t most = 4 * most_planned_targets;
-  std::vector<Point>& former = targeting.former_points;
-  const std::vector<Point> now = points_of(targeting);
-  former.insert(former.end(), now.begin(), now.end());
-  former.erase(former.begin(), former.end() - std::min(most, former.size()));
-  targeting.entry_point.reset();
-  targeting.target_point.reset();
-  targeting.planned_targets.clear();
-  return targeting;
-}
-
-bool returns_to_former_point(const Targeting& before, const Targeting& after) {
-  constexpr double same_mm = 0.1;  // what was rounded on its way is the same
-  const std::vector<Point> known = points_of(before);
-  const auto is_former = [&](const Point& point) {
-    return std::ranges::any_of(before.former_points, [&](const Point& former) {
-      return std::hypot(point[0] - former[0], point[1] - former[1], point[2] - former[2]) <= same_mm;
-    });
-  };
-  return std::ranges::any_of(points_of(after), [&](const Point& point) {
-    return std::ranges::find(known, point) == known.end() && is_former(point);
-  });
+std::vector<Point> points_of(const Targeting& targeting) {
+  std::vector<Point> points;
+  for (const auto& point : {targeting.entry_point, targeting.target_point}) {
+    if (point) {
+      points.push_back(*point);
+    }
+  }
+  for (const PlannedTarget& each : targeting.planned_targets) {
+    points.insert(points.end(), {each.entry_point, each.target_point});
+  }
+  return points;
 }
 
 tl::expected<RowMajor, Problem> rigid_pose(const json& body, const std::string& name) {

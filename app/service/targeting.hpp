@@ -87,8 +87,6 @@ struct Targeting {
   std::optional<Point> entry_point;
   std::optional<Point> target_point;
   std::vector<PlannedTarget> planned_targets; /**< in the order of whoever planned them */
-  /** Where entries and targets were before the table moved, the newest last: a program sets none there. */
-  std::vector<Point> former_points;
   double treatment_to_tip_mm = 0.0;           /**< A */
   double robot_to_entry_mm = 0.0;             /**< B */
   double cannula_to_treatment_mm = 0.0;       /**< C */
@@ -131,12 +129,8 @@ tl::expected<Targeting, Problem> with_planned_targets(Targeting targeting, const
 /** The targeting without entry and target. */
 tl::expected<Targeting, Problem> without_target(Targeting targeting, const nlohmann::json& body);
 
-/** Without entry, target and planned targets, which are elsewhere since the table moved: what moves the robot
- * in the scanner moves the patient, too. */
-Targeting without_points(Targeting targeting);
-
-/** Whether it has a point that the one before has not, and that is one of before the table moved. */
-bool returns_to_former_point(const Targeting& before, const Targeting& after);
+/** Entry, target and those of the planned targets. */
+std::vector<Point> points_of(const Targeting& targeting);
 
 /** Sets entry and target by the pose that the treatment point is to have: it comes along the pose's third
  * axis, from as far off as entry and target were before, or 50 mm. */

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <string>
 
+#include "service/cases.hpp"
 #include "service/reply.hpp"
 #include "service/targeting_store.hpp"
 
@@ -60,9 +61,34 @@ bool leads_elsewhere(Targeting before, const Targeting& after) {
 Problem former_point() {
   return {.status = Status::conflict,
           .code = "NO_TARGET",
-          .detail = "It has an entry or a target of before the table moved.",
+          .detail = "It has an entry or a target of before the table moved, or of another case.",
           .expected = "points of images that were made since",
           .next_step = "Plan on new images, or set them in the console if they still hold."};
+}
+
+/** What moves the robot in the scanner moves the patient, too: points of before are elsewhere. */
+Targeting without_points(Targeting targeting) {
+  targeting.entry_point.reset();
+  targeting.target_point.reset();
+  targeting.planned_targets.clear();
+  return targeting;
+}
+
+/** Keeps the points that it has and the one before has not; one that a program sends may be no former one. */
+tl::expected<void, Problem> keep_points(Transaction& transaction, const Targeting& before,
+                                        const Targeting& after, TaskSource source) {
+  Points points(transaction);
+  const std::vector<Point> known = points_of(before);
+  for (const Point& each : points_of(after)) {
+    if (std::ranges::find(known, each) != known.end()) {
+      continue;
+    }
+    if (source == TaskSource::openigtlink && points.is_former(after.case_number, each)) {
+      return fail(former_point());
+    }
+    points.add(after.case_number, each);
+  }
+  return {};
 }
 
 Problem no_case(const std::string& problem) {
@@ -104,9 +130,10 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
             is_repeated(transaction, *after.targeting)) {
           return {fail(repeated(before)), false};
         }
-        if (after.targeting && origin.source == TaskSource::openigtlink &&
-            returns_to_former_point(before, *after.targeting)) {
-          return {fail(former_point()), false};
+        if (after.targeting) {
+          if (const auto kept = keep_points(transaction, before, *after.targeting, origin.source); !kept) {
+            return {fail(kept.error()), false};
+          }
         }
         if (after.targeting) {
           after.targeting = judged(std::move(*after.targeting), in_force);
@@ -141,6 +168,21 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
   co_return kept;
 }
 
+boost::asio::awaitable<tl::expected<void, Problem>> check_points(const Context& context,
+                                                                 std::vector<Point> points) {
+  auto find = [number = context.in_force.open_case, points = std::move(points)](Store& store) {
+    return store.read([&](Transaction& transaction) -> Stored<bool> {
+      const Points known(transaction);
+      return std::ranges::any_of(points, [&](const Point& each) { return known.is_former(number, each); });
+    });
+  };
+  const auto has_former = co_await context.store.run(std::move(find));
+  if (!has_former || *has_former) {
+    co_return fail(has_former ? former_point() : has_former.error());
+  }
+  co_return tl::expected<void, Problem>();
+}
+
 boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(const Context& context,
                                                                              Caller caller,
                                                                              std::string reason) {
@@ -160,6 +202,9 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(con
         if (judged(stored, before).registration_problem.empty()) {
           expired.registration_expired = reason;
         }
+        if (!is_app) {
+          Points(transaction).leave(stored.case_number);
+        }
         if (expired != stored) {
           set_targeting(transaction, judged(stored, before), judged(expired, after), origin, entry);
         }
@@ -169,6 +214,9 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(con
   };
   const auto kept = co_await context.store.run(std::move(keep));
   if (!kept) {
+    if (!is_app) {
+      put_in_force(context, 0, caller.user);  // its points would outlive the move of the table
+    }
     co_return fail(kept.error());
   }
   co_return judged(*kept, context.in_force);

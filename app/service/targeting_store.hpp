@@ -62,12 +62,17 @@ using TargetingChange = tl::expected<Targeting, Problem> (*)(Targeting, const nl
  * problem), when the caller has lost session (401 LOGIN) or control (409 CONTROL) meanwhile, or the store
  * fails (503 STORE). A registration that can hardly be right needs a reason (422 IMPLAUSIBLE), which
  * navigation programs cannot give. A program may not set the registration again that has expired (409
- * NO_REGISTRATION): only a person can know that it holds.
+ * NO_REGISTRATION), nor an entry or target of before the table moved or of another case (409 NO_TARGET): only
+ * a person can know that it holds.
  */
 boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const Context& context,
                                                                           Caller caller, TaskSource source,
                                                                           TargetingChange make,
                                                                           nlohmann::json body);
+
+/** 409 NO_TARGET when a program may not set one of these points. */
+boost::asio::awaitable<tl::expected<void, Problem>> check_points(const Context& context,
+                                                                 std::vector<Point> points);
 
 /** Ends the validity of the registration at once, with everything that followed from it, on behalf of the
  * caller or, without a session, of the app. The store keeps the reason; 503 STORE when it cannot: then

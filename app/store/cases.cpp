@@ -37,6 +37,15 @@ std::optional<KeptCase> first_of(SQLite::Statement& rows) {
   return rows.executeStep() ? std::optional(kept_case(rows)) : std::nullopt;
 }
 
+constexpr const char* is_near =
+    "x BETWEEN ?1 - 0.1 AND ?1 + 0.1 AND y BETWEEN ?2 - 0.1 AND ?2 + 0.1 AND z BETWEEN ?3 - 0.1 AND ?3 + 0.1";
+
+void bind(SQLite::Statement& statement, const std::array<double, 3>& point) {
+  for (int place = 0; place < 3; ++place) {
+    statement.bind(place + 1, point[static_cast<std::size_t>(place)]);
+  }
+}
+
 }  // namespace
 
 std::string_view case_state_name(CaseState state) { return state_names[static_cast<std::size_t>(state)]; }
@@ -118,6 +127,33 @@ void Registrations::add(const KeptRegistration& set) {
   SQLite::Statement forget(database_, "DELETE FROM registrations WHERE number <= ?");
   forget.bind(1, database_.getLastInsertRowid() - most);
   forget.exec();
+}
+
+void Points::add(std::int64_t case_number, const std::array<double, 3>& point) {
+  SQLite::Statement replace(database_, std::string("DELETE FROM points WHERE ") + is_near);
+  bind(replace, point);
+  replace.exec();
+  SQLite::Statement insert(database_, "INSERT INTO points (x, y, z, case_number) VALUES (?, ?, ?, ?)");
+  bind(insert, point);
+  insert.bind(4, case_number);
+  insert.exec();
+  SQLite::Statement forget(database_, "DELETE FROM points WHERE number <= ?");
+  forget.bind(1, database_.getLastInsertRowid() - most);
+  forget.exec();
+}
+
+void Points::leave(std::int64_t case_number) {
+  SQLite::Statement update(database_, "UPDATE points SET is_former = 1 WHERE case_number = ?");
+  update.bind(1, case_number);
+  update.exec();
+}
+
+bool Points::is_former(std::int64_t case_number, const std::array<double, 3>& point) const {
+  SQLite::Statement select(database_, std::string("SELECT 1 FROM points WHERE ") + is_near +
+                                          " AND (is_former OR case_number <> ?4)");
+  bind(select, point);
+  select.bind(4, case_number);
+  return select.executeStep();
 }
 
 std::vector<KeptRegistration> Registrations::newest_first() const {

@@ -1,7 +1,7 @@
 /**
  * @file
  * The cases: what registration, target and motions belong to. At most one of them is not closed. And the
- * registrations of them all.
+ * registrations, entries and targets of them all.
  */
 #pragma once
 
@@ -86,6 +86,28 @@ class Registrations {
 
   /** All that are kept; throws `SQLite::Exception` for one that no app wrote. */
   [[nodiscard]] std::vector<KeptRegistration> newest_first() const;
+
+ private:
+  SQLite::Database& database_;
+};
+
+/** The entries and targets that were ever set or planned, in one transaction; those of cases that were
+ * deleted as well. Points are x, y and z in mm; those that differ by 0.1 mm in each of them are the same. */
+class Points {
+ public:
+  /** So many are kept, the newest. */
+  static constexpr std::int64_t most = 10'000;
+
+  explicit Points(Transaction& transaction) : database_(transaction.database()) {}
+
+  /** Keeps a point that was set in that case, which is no former one any more. */
+  void add(std::int64_t case_number, const std::array<double, 3>& point);
+
+  /** Those of that case are former ones: the table moved. */
+  void leave(std::int64_t case_number);
+
+  /** Whether such a point was set in another case or before the table moved, and not since. */
+  [[nodiscard]] bool is_former(std::int64_t case_number, const std::array<double, 3>& point) const;
 
  private:
   SQLite::Database& database_;

@@ -113,7 +113,7 @@ FROM settings WHERE key = 'targeting' AND json_valid(value);
 DELETE FROM settings WHERE key IN ('targeting', 'targeting_last_set', 'targeting_changes');
 )sql";
 
-/** Every registration that was set stays known, whatever becomes of its case. */
+/** Every registration, entry and target that was set stays known, whatever becomes of its case. */
 constexpr const char* version_4 = R"sql(
 CREATE TABLE registrations (
   number INTEGER PRIMARY KEY AUTOINCREMENT,
@@ -133,6 +133,22 @@ INSERT INTO registrations (case_number, epoch, pose)
 SELECT number, coalesce(json_extract(value, '$.targeting.registration_epoch'), 0),
   json_extract(value, '$.targeting.registration')
 FROM cases WHERE json_type(value, '$.targeting.registration') = 'array';
+
+CREATE TABLE points (
+  number INTEGER PRIMARY KEY AUTOINCREMENT,
+  case_number INTEGER NOT NULL,
+  is_former INTEGER NOT NULL DEFAULT 0,
+  x REAL NOT NULL,
+  y REAL NOT NULL,
+  z REAL NOT NULL
+) STRICT;
+
+CREATE INDEX points_by_place ON points (x);
+
+INSERT INTO points (case_number, x, y, z)
+SELECT cases.number, json_extract(point.value, '$[0]'), json_extract(point.value, '$[1]'), json_extract(point.value, '$[2]')
+FROM cases, json_each(cases.value, '$.targeting') AS point
+WHERE point.key IN ('entry_point', 'target_point') AND point.type = 'array';
 
 UPDATE cases SET value = json_remove(value, '$.targeting.registrations_before');
 

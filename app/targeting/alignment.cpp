@@ -49,8 +49,9 @@ KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kin
         alignment.reachable * Eigen::Vector3d(0.0, 0.0, kinematics.probe().treatment_to_tip_mm);
     alignment.deviation = deviation(alignment.reachable, alignment.desired);
     if (const auto depth_mm = kinematics.depth_mm(positions)) {
-      alignment.cannula_length_mm =
+      const double length_mm =
           *depth_mm + kinematics.probe().robot_to_entry_mm - kinematics.probe().cannula_to_treatment_mm;
+      alignment.cannula_length_mm = length_mm > 0.0 ? std::optional(length_mm) : std::nullopt;
     }
     return alignment;
   });

@@ -36,7 +36,7 @@ struct Alignment {
   Pose reachable;                      /**< where the setpoints lead: whole counts, clamped */
   Eigen::Vector3d reachable_tip = Eigen::Vector3d::Zero(); /**< A beyond the reachable treatment point */
   Deviation deviation;                                     /**< of the reachable pose from the desired one */
-  /** D + insertion - C; of a robot that goes through an entry point alone. */
+  /** D + insertion - C, where that is a length; of a robot that goes through an entry point alone. */
   std::optional<double> cannula_length_mm;
 };
 

@@ -20,7 +20,9 @@ from motion import (
     LATERAL,
     enable,
     home_all,
+    last_drive,
     motor,
+    plant_tick,
     press,
     propose,
     register,
@@ -430,6 +432,19 @@ def test_stop_over_openigtlink_stops_what_moves(robot: Stack, navigate: Callable
     navigator = moving(robot, navigate)
     assert navigator.ask(text("STOP", "")).code == OK
     wait_until("ended", lambda: robot.api.get("/api/proposals").json()[0]["state"] == "aborted")
+
+
+def test_a_stop_does_not_wait_for_what_its_sender_has_sent_before(
+    robot: Stack, navigate: Callable[..., Navigator]
+) -> None:
+    """Of a thousand messages a hundred are read in 100 ms."""
+    moving(robot, navigate)
+    with socket.create_connection(("127.0.0.1", robot.igtl_port)) as program:
+        program.sendall(Query("STATUS", "robot_status").pack() * 1000 + text("STOP", "").pack())
+        sent_tick = plant_tick(robot)
+        wait_until("all of it is read", lambda: plant_tick(robot) > sent_tick + 1000)
+    assert sent_tick - 100 < last_drive(robot) < sent_tick + 500
+    assert newest(robot)["state"] == "aborted"
 
 
 def test_the_role_ends_with_control(robot: Stack, navigate: Callable[..., Navigator]) -> None:

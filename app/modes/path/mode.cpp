@@ -95,7 +95,10 @@ void PathMode::settle(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
   std::uint32_t late = ILK_SLOTS;
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    if (leg_moves(slot) && !trackers_[slot].arrived(snapshot, points_[slot])) {
+    AxisTracker& tracker = trackers_[slot];
+    const bool is_there =
+        resting_ ? tracker.stays(snapshot, points_[slot]) : tracker.arrived(snapshot, points_[slot]);
+    if (leg_moves(slot) && !is_there) {
       late = slot;
     }
   }

@@ -84,6 +84,23 @@ TEST_F(CaseRoutesTest, WhatWasInForceIsSoAgainOnceSomebodyResumesTheCase) {
   EXPECT_TRUE(targeting()["target_point"].is_null()) << "the patient moved with the table";
 }
 
+TEST_F(CaseRoutesTest, WhenTheStoreDoesNotTakeThatTheTableMovedTheCaseIsSuspended) {
+  aim();
+  const auto execute = [this](const char* sql) {
+    ASSERT_TRUE(mine_.transact([&](Transaction& transaction) -> Stored<void> {
+      transaction.database().exec(sql);
+      return {};
+    }));
+  };
+  execute("CREATE TRIGGER no_records BEFORE INSERT ON audit BEGIN SELECT RAISE(ABORT, 'refused'); END");
+  EXPECT_EQ(code_of(post("/api/targeting/registration/expire", "{}")), "STORE");
+  execute("DROP TRIGGER no_records");
+  EXPECT_EQ(json::parse(get("/api/cases").body)[0]["state"], "suspended");
+  take("1/resume");
+  EXPECT_EQ(targeting()["registration_state"], "expired");
+  EXPECT_FALSE(targeting()["target_point"].is_null()) << "somebody has looked at it";
+}
+
 TEST_F(CaseRoutesTest, TheNextCaseBeginsWithNothingOfTheOneBefore) {
   aim();
   ASSERT_EQ(put("/api/targeting/target", R"({"treatment_to_tip_offset":7})").status, 200u);

@@ -121,6 +121,14 @@ TEST(Alignment, OffsetsAAndCTellTipAndCannula) {
               1e-9);
 }
 
+TEST(Alignment, OffsetsThatLeaveACannulaNoLengthTellNone) {
+  ProbeOffsets probe = neuro().probe;
+  probe.cannula_to_treatment_mm = 500.0;
+  const auto alignment = align(neuro(), *RobotKinematics::create(neuro(), probe),
+                               registered(Pose::Identity()), aim_in(Pose::Identity()));
+  EXPECT_FALSE(alignment->cannula_length_mm);
+}
+
 TEST(Alignment, TheProstateAlignsInItsZframe) {
   std::mt19937_64 generator(4);
   const Pose scanner_from_zframe = test::random_pose(generator, 300.0);

@@ -1146,7 +1146,8 @@ export interface paths {
          *     a home step that goes to positions, of an axis that is not homed by then (NOT_HOMED), or homing that could part linked sliders too far (SEPARATION).
          *     Motions of several axes: axes that are not homed (NOT_HOMED), targets out of range (RANGE), sliders beyond their linkage (SEPARATION),
          *     no motion within the rates of the axes (NO_PATH); a pose that cannot be had (UNREACHABLE, or a problem of `alignment`),
-         *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY). An ablation needs a valid registration (NO_REGISTRATION) and a target (NO_TARGET).
+         *     or whose registration, probe or target changed meanwhile (STALE); no trajectory loaded (EMPTY). An ablation needs a robot that is aligned with its target (NOT_ALIGNED),
+         *     and a miss beyond the tolerances (UNREACHABLE) accepted by a motion to a pose that was done for this registration, probe and target.
          *     Ablations and biopsies rest on where the axes of the kinematics stand: moved before the approval it is STALE, moved afterwards it ends.
          *     A refused draft stays in the list.
          */
@@ -2218,7 +2219,7 @@ export interface components {
             deviation: components["schemas"]["Deviation"];
             /** @description Of the robot's file; else the desired pose is refused, UNREACHABLE. */
             within_tolerance: boolean;
-            /** @description D + insertion - C; the NeuroRobot's alone. */
+            /** @description D + insertion - C; the NeuroRobot's alone, and null where these offsets leave no length. */
             cannula_length_mm: number | null;
         };
         Deviation: {
