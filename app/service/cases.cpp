@@ -1,5 +1,8 @@
 #include "service/cases.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
@@ -9,6 +12,7 @@
 namespace interlock {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::size_t most_cases = 200;
@@ -66,6 +70,32 @@ Stored<json> listed(const KeptCase& kept, const Look& look) {
     }
     return shown;
   });
+}
+
+/** Names of the black box' recordings that were finished while the case was not closed, or just afterwards: a
+ * recording goes on for two seconds after what it is about. */
+json recordings_of(const KeptCase& kept, const fs::path& folder) {
+  constexpr std::chrono::seconds afterwards{5};
+  const auto time_of = [&](const char* step) {
+    return kept.value.value(step, json::object()).value("time", "");
+  };
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator each(folder, error); !error && each != fs::directory_iterator();
+       each.increment(error)) {
+    std::error_code gone;
+    const auto written = fs::last_write_time(each->path(), gone);
+    const auto time =
+        std::chrono::time_point_cast<UtcTime::duration>(std::chrono::file_clock::to_sys(written));
+    const bool is_within =
+        iso_8601(time) >= time_of("opened") &&
+        (kept.state != CaseState::closed || iso_8601(time - afterwards) <= time_of("changed"));
+    if (!gone && each->path().extension() == ".ilkr" && is_within) {
+      names.push_back(each->path().filename());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
 }
 
 Problem no_such_case(std::int64_t number) {
@@ -297,7 +327,7 @@ CaseAnswer list_cases(const Context& context) {
 }
 
 CaseAnswer export_case(const Context& context, std::int64_t number) {
-  auto find = [number, look = Look(context)](Store& store) {
+  auto find = [number, look = Look(context), folder = context.noted_heads.parent_path()](Store& store) {
     return store.read([&](Transaction& transaction) -> Stored<Outcome> {
       const Cases cases(transaction);
       const auto kept = cases.find(number);
@@ -315,6 +345,7 @@ CaseAnswer export_case(const Context& context, std::int64_t number) {
       if (shown) {
         (*shown)["schema"] = "interlock.case/1";
         (*shown)["changes"] = cases.changes(number, most_records);
+        (*shown)["recordings"] = recordings_of(*kept, folder);
         (*shown)["records"] = json::array();
         for (const AuditRecord& each : records) {
           (*shown)["records"].push_back(to_json(each));

@@ -332,3 +332,13 @@ def test_a_start_of_the_app_suspends_the_case_until_somebody_resumes_it(stack: S
     assert (resumed["state"], resumed["problem"]) == ("open", None)
     assert resumed["targeting"]["target_point"] == TARGETS[0]["target_point"]
     assert motor(robot, 0)["homed"], "the robot is where it was"
+
+
+def test_the_export_of_a_case_names_what_the_black_box_recorded_meanwhile(stack: StackFactory) -> None:
+    robot = ready(stack)
+    robot.control("estop", pulled=True)
+    wait_until("it is recorded", lambda: list((robot.state / "recordings").glob("*-lock-*.ilkr")) != [])
+    robot.api.post("/api/cases/1/close").raise_for_status()
+    exported = judge(robot.api.get("/api/cases/1")).raise_for_status().json()
+    [recording] = (robot.state / "recordings").glob("*.ilkr")
+    assert exported["recordings"] == [recording.name]

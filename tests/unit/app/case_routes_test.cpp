@@ -1,3 +1,8 @@
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
 #include "http_fixture.hpp"
 #include "service/targeting.hpp"
 
@@ -221,6 +226,28 @@ TEST_F(CaseRoutesTest, TheExportHoldsWhatHappenedFromOpeningToClosingAndNothingE
   }
   EXPECT_EQ(kinds, (std::set<std::string>{"case", "proposal", "setting"}));
   EXPECT_EQ(get("/api/cases/2").status, 404u);
+}
+
+TEST_F(CaseRoutesTest, TheExportNamesTheRecordingsThatWereFinishedFromOpeningToClosing) {
+  namespace fs = std::filesystem;
+  const fs::path recordings = folder_.path() / "recordings";
+  fs::create_directory(recordings);
+  in_network([&] { api_.compare_with(recordings / "audit-heads"); });
+  const auto finish = [&](const char* name, std::chrono::seconds after) {
+    std::ofstream(recordings / name) << "recorded";
+    fs::last_write_time(recordings / name, std::chrono::file_clock::from_sys(now() + after));
+  };
+  const auto named = [this] { return json::parse(get("/api/cases/1").body)["recordings"]; };
+  EXPECT_EQ(named(), json::array());
+  finish("before.ilkr", std::chrono::seconds(-1));
+  finish("within.ilkr", std::chrono::seconds(3));
+  finish("unfinished.ilkr.part", std::chrono::seconds(3));
+  EXPECT_EQ(named(), json::array({"within.ilkr"}));
+  pass(std::chrono::seconds(10));
+  take("1/close");
+  finish("at_the_end.ilkr", std::chrono::seconds(4));
+  finish("of_the_next.ilkr", std::chrono::seconds(6));
+  EXPECT_EQ(named(), json::array({"at_the_end.ilkr", "within.ilkr"}));
 }
 
 TEST_F(CaseRoutesTest, AClosedCaseIsDeletedWithWhatPeopleWroteInIt) {

@@ -2092,6 +2092,8 @@ export interface components {
             /** @enum {string} */
             schema: "interlock.case/1";
             changes: components["schemas"]["TargetingHistory"]["changes"];
+            /** @description Names of the recordings of the black box that were finished from its opening to its closing, as far as they are kept on this machine. */
+            recordings: string[];
             /** @description Of the audit, from its opening to its closing, oldest first: motions, requests and their verdicts, STOPs, settings, who was in control, and the steps of the case. */
             records: components["schemas"]["AuditRecord"][];
             /** @description False: there are more than 5000, of which these are the newest, or the audit has retired some. */
