@@ -351,7 +351,12 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   if (const auto let_in = let_somebody_in(store); !let_in) {
     return tl::make_unexpected("--state " + options.state_directory + ": " + let_in.error().message());
   }
-  igtl::StopScout scout(door.get_executor(), [&] { channel->stop(); });
+  const auto stop_before_its_turn = [&] {
+    channel->stop();
+    spdlog::warn("STOP by OpenIGTLink, before its turn");
+  };
+  igtl::StopScout scout(door.get_executor(), stop_before_its_turn);
+  api.navigation().server().on_stop_ahead = stop_before_its_turn;
   api.navigation().server().on_socket = [&](int socket, const std::weak_ptr<const void>& connection) {
     scout.watch(socket, connection);
   };

@@ -21,7 +21,7 @@ std::optional<StopName> stop_name(std::string_view device) {
 }
 
 bool may_ask_to_stop(std::string_view device) {
-  const std::string name = lower(device);
+  const std::string name = lower(device.substr(device.rfind('/') + 1));
   return name == "mode" || name == "state_command" || name.starts_with("cmd_");
 }
 

@@ -14,6 +14,7 @@
 #include <sstream>
 
 #include "igtl/codec.hpp"
+#include "igtl/stop_scout.hpp"
 #include "system/launch.hpp"
 
 namespace interlock::igtl {
@@ -220,7 +221,7 @@ asio::awaitable<void> IgtlServer::read(SessionPointer session) {
       const bool completed = !std::holds_alternative<std::monostate>(arrival);
       if (completed) {
         session->message_since.reset();
-        co_await slow_down(session);
+        co_await slow_down(session, input);
       }
     }
     if (!session->reader.is_within_message()) {
@@ -246,14 +247,17 @@ asio::awaitable<void> IgtlServer::part(SessionPointer session, std::string reaso
   }
 }
 
-/** Who sends too much is read later; TCP tells it. */
-asio::awaitable<void> IgtlServer::slow_down(SessionPointer session) {
+/** Who sends too much is read later; TCP tells it. A STOP in `unread` does not wait for that. */
+asio::awaitable<void> IgtlServer::slow_down(SessionPointer session, Bytes unread) {
   const auto time = read_clock();
   if (time - session->window_since >= rate_window) {
     session->window_since = time;
     session->in_window = 0;
   }
   if (++session->in_window > most_messages) {
+    if (stops_in(unread) != 0) {
+      on_stop_ahead();
+    }
     session->pause.expires_after(session->window_since + rate_window - time);
     co_await session->pause.async_wait(as_result);
   }

@@ -130,6 +130,8 @@ class IgtlServer {
 
   /** Told of each connection, its messages, those that are skipped, and its end with the reason. */
   std::function<void(PeerId)> on_open = [](PeerId) {};
+  /** Told of a STOP among what was read and has to wait for its turn. */
+  std::function<void()> on_stop_ahead = [] {};
   /** Told before that of the socket, which may be looked at for as long as the connection lives. */
   std::function<void(int, std::weak_ptr<const void>)> on_socket = [](int, const std::weak_ptr<const void>&) {
   };
@@ -201,7 +203,7 @@ class IgtlServer {
   boost::asio::awaitable<void> read(SessionPointer session);
   boost::asio::awaitable<void> part(SessionPointer session, std::string reason);
   boost::asio::awaitable<void> write(SessionPointer session);
-  boost::asio::awaitable<void> slow_down(SessionPointer session);
+  boost::asio::awaitable<void> slow_down(SessionPointer session, Bytes unread);
   void take(Session& session, Frame frame);
   void refuse(Session& session, const Header& header, const FaultAt& fault);
   void note_sign_of_life(Session& session);

@@ -517,6 +517,23 @@ TEST_F(IgtlServerTest, WhoSendsTooMuchIsReadLater) {
   EXPECT_GE(steady_clock::now() - begun, IgtlServer::rate_window);
 }
 
+TEST_F(IgtlServerTest, AStopIsSeenThoughItWaitsBehindWhatIsReadLater) {
+  std::optional<std::size_t> read_before;
+  server_.on_stop_ahead = [&] { read_before = read_before.value_or(messages_.size()); };
+  start();
+  auto socket = connect();
+  ByteVector flood;
+  for (std::size_t i = 0; i < IgtlServer::most_messages + 20; ++i) {
+    flood.insert(flood.end(), hello.begin(), hello.end());
+  }
+  const ByteVector stop = write_frame(1, "STATUS", "STOP", 0, encode(Status{}));
+  flood.insert(flood.end(), stop.begin(), stop.end());
+  send(socket, flood);
+  ASSERT_TRUE(run_until([&] { return messages_.size() == IgtlServer::most_messages + 21; }));
+  ASSERT_TRUE(read_before);
+  EXPECT_LE(*read_before, IgtlServer::most_messages + 1);
+}
+
 /** The library's own sockets block, so the server runs in a thread of its own meanwhile. */
 class IgtlServerAndLibraryTest : public IgtlServerTest {
  protected:

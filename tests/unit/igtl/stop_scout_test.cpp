@@ -35,6 +35,7 @@ TEST(StopsIn, EveryWayToAskForAStopCountsWhereverItBegins) {
                                       write_frame(2, "WORD", "EMERGENCY", 0, ByteVector(8, 1)),
                                       text("MODE", "stop"),
                                       text("state_command", "pause"),
+                                      text("arm/state_command", "pause"),
                                       text("CMD_17", "STOP"),
                                       text("CMD_0003", "EMERGENCY")};
   for (const ByteVector& stop : stops) {
