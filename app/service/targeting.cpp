@@ -269,13 +269,13 @@ json to_stored(const Targeting& targeting) {
 tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   const json values = stored.is_object() ? without_nulls(stored) : stored;
   Targeting targeting;
-  Fields fields(values,
-                {"registration", "registration_epoch", "registration_expired", "registration_doubt",
-                 "override_reason", "ignore_registration_rotation", "residual_mm", "fiducials", "entry_point",
-                 "target_point", "planned_targets", "former_points", "reported_position",
-                 "treatment_to_tip_offset", "robot_to_entry_offset", "cannula_to_treatment_offset",
-                 "canula_to_treatment_offset", "treatment_to_robot_at_home"},
-                "targeting");
+  Fields fields(
+      values,
+      {"registration", "registration_epoch", "registration_expired", "registration_doubt", "override_reason",
+       "ignore_registration_rotation", "residual_mm", "fiducials", "entry_point", "target_point",
+       "planned_targets", "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
+       "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+      "targeting");
   targeting.registration = read_pose(fields, "registration");
   targeting.registration_epoch = fields.integer("registration_epoch", 0, latest_epoch).value_or(0);
   targeting.registration_expired = fields.text("registration_expired").value_or("");
