@@ -926,6 +926,7 @@ static void accept(ilk_ghost_t* ghost, const ilk_tick_t* tick, const ilk_request
         g->drift_mark = g->raw;
         g->drift_known = true;
         g->reverse_direction = ILK_DIRECTION_NONE;
+        g->stall_direction = ILK_DIRECTION_NONE;
       }
       break;
     case ILK_REQUEST_CLEAR_FAULT:

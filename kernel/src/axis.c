@@ -73,11 +73,13 @@ void ilk_axis_begin_press(ilk_axis_t *axis) {
   axis->homing_ticks = 0u;
 }
 
+/** A hand may have moved it: what its next drive does is measured from where that begins. */
 void ilk_axis_enable(ilk_axis_t *axis) {
   if (axis->state == (uint32_t)ILK_AXIS_DISABLED) {
     axis->state = (uint32_t)ILK_AXIS_ENABLED;
     axis->drift_mark_raw = axis->raw;
     axis->reverse_direction = (uint32_t)ILK_DIRECTION_NONE;
+    axis->stall_direction = (uint32_t)ILK_DIRECTION_NONE;
   }
 }
 

@@ -50,7 +50,7 @@ ReadsOpen(k, a)      == ~a.switch_triggered /\ a.switch_ticks >= k.switch_deboun
 IsAtRest(k, a) == a.card_valid /\ a.rest.ticks >= k.rest_ticks
 
 -------------------------------------------------------------------------------
-(* What ends motion, and faults. An axis that is not enabled has no direction. *)
+(* What ends motion, and faults. An axis that is not enabled has no direction to reverse. *)
 DropMotion(a) ==
   [a EXCEPT !.state = IF @ \in {"MOVING", "HOMING"} THEN "ENABLED" ELSE @,
             !.setpoint_counts = 0, !.drive = 0, !.lease_ticks = 0, !.homing_phase = "NONE"]
@@ -303,7 +303,7 @@ JudgeAxis(c, k, s, a, request) ==
     [] request.kind = "RESTORE"     -> JudgeRestore(k, s, a, request)
 
 Enabled(a) ==
-  IF IsEnabled(a) THEN a ELSE [a EXCEPT !.state = "ENABLED", !.drift_mark = a.raw]
+  IF IsEnabled(a) THEN a ELSE [a EXCEPT !.state = "ENABLED", !.drift_mark = a.raw, !.stall_direction = "NONE"]
 
 ClearFault(a) ==
   LET cleared == [a EXCEPT !.state = "DISABLED", !.fault = "NONE"]

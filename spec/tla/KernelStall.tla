@@ -23,17 +23,18 @@ Wishes ==
     [] OTHER -> {<<>>, <<Forth>>, <<Slow>>, <<Back>>, <<Ask("DISABLE")>>, <<Ask("ENABLE"), Forth>>}
 
 (* Since the last progress or arrival of its own marks, or CLEAR_FAULT of a stall: ticks
-   and effort driven; the way of the marks, and the marks. *)
+   and effort driven; the way of the marks, which ENABLE ends, and the marks. *)
 Nothing == [driven |-> 0, effort |-> 0, way |-> "NONE", far |-> 0, near |-> 0]
 
 Beyond(mark) == Along(seen.way, Read1.raw - mark)
 
 Whole   == Read1.valid /\ Beyond(seen.far) >= k.stall_min_counts
 Some    == Read1.valid /\ Beyond(seen.near) > k.noise_counts
-Arrived == /\ Read1.valid /\ io'.axis.state = "MOVING" /\ io'.system.mode = "MOTION" /\ ~Driven
+Arrived == /\ Read1.valid /\ io'.axis.state = "MOVING" /\ io'.system.mode = "MOTION" /\ ~Driven /\ ~Enables
            /\ Magnitude(io'.axis.setpoint_counts - io'.axis.position_counts) <= k.deadband_counts
            /\ Along(seen.way, Read1.raw - (IF Whole THEN Read1.raw ELSE seen.far)) > k.noise_counts
 Excused == Accepted({"CLEAR_FAULT"}) /\ axis.fault = "STALL"
+Enables == Accepted({"ENABLE"}) /\ ~IsEnabled(axis)
 Renewed == Read1.valid /\ (Read1.reset \/ ~axis.card_seen)
 
 Witnessed ==
@@ -41,10 +42,10 @@ Witnessed ==
       clear   == ~Renewed /\ (Whole \/ Arrived)
       driven  == IF clear \/ Excused THEN 0 ELSE seen.driven
       effort  == IF clear \/ Excused \/ (Some /\ ~Renewed) THEN 0 ELSE seen.effort
-      anew    == (Driven /\ command.direction # seen.way) \/ Renewed \/ Excused
+      anew    == (Driven /\ (Enables \/ command.direction # seen.way)) \/ Renewed \/ Excused
   IN  [ driven |-> CountBy(driven, IF Driven THEN 1 ELSE 0, k.stall_ticks + 1),
         effort |-> CountBy(effort, command.drive, (k.stall_effort_ticks + 1) * k.max_drive),
-        way    |-> IF Driven THEN command.direction ELSE seen.way,
+        way    |-> IF Driven THEN command.direction ELSE IF Enables THEN "NONE" ELSE seen.way,
         far    |-> IF anew THEN io'.axis.raw ELSE IF clear THEN Read1.raw ELSE seen.far,
         near   |-> IF anew THEN io'.axis.raw ELSE IF Whole \/ Some THEN Read1.raw ELSE seen.near ]
 

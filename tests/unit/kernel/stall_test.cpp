@@ -159,6 +159,35 @@ TEST(P5_stall, progress_while_undriven_or_pushed_by_hand_counts_in_the_commanded
   }
 }
 
+TEST(P5_stall, an_axis_that_was_pushed_back_by_hand_is_judged_from_where_it_was_enabled) {
+  for (const bool frozen : {false, true}) {
+    Bench bench = homed_bench(axis, 0, coarse_config());
+    bench.keep_moving(axis, 400, 60);
+    bench.release();
+    bench.ask(disable(axis));
+    bench.push(axis, -300);
+    bench.rest();
+    bench.enable_axis(axis);
+    bench.press();
+    bench.motor[axis].frozen = frozen;
+    EXPECT_EQ(driven_until_fault(bench, [](uint32_t) { return move(axis, 400, 1000); }, 60),
+              frozen ? effort_ticks : 60u);
+    EXPECT_EQ(bench.fault(axis), frozen ? ILK_FAULT_STALL : ILK_FAULT_NONE);
+  }
+}
+
+TEST(P5_stall, neither_ENABLE_nor_a_push_back_forgives_what_was_driven_before) {
+  Bench bench = jammed_bench();
+  bench.keep_moving(axis, 80, 30);
+  bench.release();
+  bench.ask(disable(axis));
+  bench.push(axis, -6);
+  bench.rest();
+  bench.enable_axis(axis);
+  bench.press();
+  EXPECT_EQ(driven_until_fault(bench, 60), stall_ticks - 30);
+}
+
 TEST(P5_stall, a_change_of_direction_moves_the_marks_and_keeps_the_sums) {
   Bench bench = jammed_bench();
   bench.keep_moving(axis, 80, 30);
