@@ -21,6 +21,7 @@
 #include "cli/store_place.hpp"
 #include "interlock/types.h"
 #include "robot/robot.hpp"
+#include "trajectory/trajectory_builder.hpp"
 #include "tuning/step_run.hpp"
 
 namespace interlock::cli {
@@ -191,7 +192,7 @@ Result<void> restore(const StoreOptions& options, const Installation& installati
 struct TrajectoryOptions {
   std::string robot; /**< name of a robot, or its file */
   std::filesystem::path file;
-  std::vector<std::string> max_velocities; /**< AXIS=VALUE in the axis' unit per second */
+  Timing timing = Timing::as_written;
 };
 
 /**

@@ -177,10 +177,9 @@ void add_trajectory(CLI::App& cli, TrajectoryOptions& options) {
   CLI::App* const check =
       command->add_subcommand("check", "Say whether a robot can follow it, in one JSON object");
   check->add_option("--robot", options.robot, "Name of a robot, or its file")->required();
-  check
-      ->add_option("--max-velocity", options.max_velocities,
-                   "AXIS=VALUE that the axis may not exceed, in its unit per second")
-      ->allow_extra_args(false);
+  check->add_flag_callback(
+      "--slow-to-fit", [&options] { options.timing = Timing::slowed_to_fit; },
+      "Where an axis would go beyond its rates, make all times longer");
   check->add_option("FILE", options.file, "Trajectory: time [s],AXIS [UNIT],... and rows of numbers")
       ->required();
 }

@@ -1,5 +1,4 @@
 #include <array>
-#include <charconv>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
@@ -13,24 +12,6 @@ namespace interlock::cli {
 using nlohmann::json;
 
 namespace {
-
-Result<VelocityLimits> limits_of(const std::vector<std::string>& assignments) {
-  VelocityLimits limits;
-  for (const std::string& assignment : assignments) {
-    const std::size_t sign = assignment.find('=');
-    const char* const end = assignment.data() + assignment.size();
-    double velocity = 0.0;
-    const bool read = sign != std::string::npos && [&] {
-      const auto [next, error] = std::from_chars(assignment.data() + sign + 1, end, velocity);
-      return error == std::errc{} && next == end;
-    }();
-    if (!read || !limits.emplace(assignment.substr(0, sign), velocity).second) {
-      return failed(ExitCode::usage, "--max-velocity " + assignment +
-                                         ": expected AXIS=VALUE, once for an axis, in its unit per second");
-    }
-  }
-  return limits;
-}
 
 /** The file's text; of one that is longer than a trajectory may be, enough to say so. */
 Result<std::string> text_of(const std::filesystem::path& file) {
@@ -54,9 +35,14 @@ json to_json(const TimedTrajectory& trajectory) {
     axes[axis.name] = {{"unit", unit_name(axis.unit)},
                        {"lowest", axis.reach.lowest},
                        {"highest", axis.reach.highest},
-                       {"top_speed", axis.top_speed}};
+                       {"top_speed", axis.top.velocity},
+                       {"top_acceleration", axis.top.acceleration},
+                       {"top_jerk", axis.top.jerk}};
   }
-  return {{"rows", trajectory.rows()}, {"duration_s", trajectory.duration_s()}, {"axes", axes}};
+  return {{"rows", trajectory.rows()},
+          {"duration_s", trajectory.duration_s()},
+          {"slowed_by", trajectory.slowed_by()},
+          {"axes", axes}};
 }
 
 json to_json(const TrajectoryError& error) {
@@ -75,15 +61,11 @@ Result<void> check_trajectory(const TrajectoryOptions& options, const Installati
   if (!robot) {
     return tl::unexpected(robot.error());
   }
-  const Result<VelocityLimits> limits = limits_of(options.max_velocities);
-  if (!limits) {
-    return tl::unexpected(limits.error());
-  }
   const Result<std::string> text = text_of(options.file);
   if (!text) {
     return tl::unexpected(text.error());
   }
-  const TrajectoryResult<TimedTrajectory> trajectory = read_trajectory(*text, *robot, *limits);
+  const TrajectoryResult<TimedTrajectory> trajectory = read_trajectory(*text, *robot, options.timing);
   output << (trajectory ? to_json(*trajectory) : to_json(trajectory.error())).dump() << '\n';
   if (!trajectory) {
     return failed(ExitCode::refused, options.file.string() + ": " + trajectory.error().message());

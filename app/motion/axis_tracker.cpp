@@ -39,6 +39,13 @@ double AxisTracker::velocity_counts_per_s() const noexcept {
   return velocity && std::abs(velocity->counts_per_s) > fastest_noise ? velocity->counts_per_s : 0.0;
 }
 
+double AxisTracker::lag(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept {
+  const double velocity = point.now.velocity_counts_per_s;
+  const double ahead = point.now.position_counts - snapshot.state.axis[slot_].position_counts;
+  const double behind = velocity == 0.0 ? 0.0 : std::copysign(1.0, velocity) * ahead;
+  return std::max(0.0, behind) / std::max(1.0, static_cast<double>(plan_.rates.following_error_counts));
+}
+
 bool AxisTracker::off_path(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept {
   const double error = point.now.position_counts - snapshot.state.axis[slot_].position_counts;
   return !(std::abs(error) <= plan_.rates.following_error_counts);

@@ -29,6 +29,10 @@ class AxisTracker {
   /** How fast the axis moves now; 0 when that may as well be the noise of its counter. */
   [[nodiscard]] double velocity_counts_per_s() const noexcept;
 
+  /** How far the axis is behind its point, as a share of the distance that its robot file allows; 0 when it
+   * is not, or nobody knows which way its path leads. */
+  [[nodiscard]] double lag(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept;
+
   /** Whether the axis is further from its point than its robot file allows. */
   [[nodiscard]] bool off_path(const ilk_snapshot_t& snapshot, const PathPoint& point) const noexcept;
 

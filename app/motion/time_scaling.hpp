@@ -7,13 +7,14 @@
  * as the axes need: every position is the trajectory's, only later, and at its last row all axes are at rest.
  *
  * The pace is the time of the trajectory that passes in a second. It rises as 3 s^2 - 2 s^3 of the share s of
- * its duration, is 1, and falls in the same way. What is left of a trajectory may be too short to come up to
- * 1; then rise and fall last as long, and the pace stays below.
+ * its duration to its peak, stays, and falls in the same way. What is left of a trajectory may be too short
+ * to come up to it; then rise and fall last as long, and the pace stays below.
+ *
+ * The peak is 1, and there is neither rise nor fall, for a trajectory that is at rest at both ends. Else the
+ * peak is below 1 where the trajectory leaves too little of an axis' acceleration and jerk for the change.
  */
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,11 +28,19 @@ class TimeScaling {
   /** Nothing is left to go. */
   TimeScaling() = default;
 
-  /** For `way_s` of a trajectory, with so long a rise and a fall; none is negative. */
-  TimeScaling(double way_s, double rise_s, double fall_s) noexcept;
+  /** For `way_s` of a trajectory, with so long a rise to `peak`, which is above 0, and a fall; none is
+   * negative. */
+  TimeScaling(double way_s, double peak, double rise_s, double fall_s) noexcept;
 
-  /** Least time in which the pace rises to 1 for an axis with that speed on the trajectory. */
-  static double change_s(double speed, const RateLimits& limits) noexcept;
+  /**
+   * Least time of a change between rest and that pace, for a trajectory whose rates are nowhere above `top`:
+   * such that velocity, acceleration and jerk keep to `limits` all the while. Infinite when nothing of them
+   * is left for it.
+   */
+  static double change_s(const RateLimits& top, const RateLimits& limits, double pace) noexcept;
+
+  /** Whether an axis may leap between that state and rest: by what its limits make up in a tick. */
+  static bool is_rest(const MotionState& state, const RateLimits& limits) noexcept;
 
   /** Until the whole way has passed. */
   [[nodiscard]] double duration_s() const noexcept { return rise_s_ + cruise_s_ + fall_s_; }
@@ -57,15 +66,34 @@ class TimeScaling {
  */
 template <typename LimitsOf>
 TimeScaling pace_along(const TimedTrajectory& trajectory, double from_s, const LimitsOf& limits_of) noexcept {
-  double rise_s = 0.0;
-  double fall_s = 0.0;
-  for (std::size_t axis = 0; axis < trajectory.axes().size(); ++axis) {
-    const RateLimits limits = limits_of(trajectory.axes()[axis].slot);
-    const double begin_speed = std::abs(trajectory.at(axis, from_s).velocity);
-    rise_s = std::max(rise_s, TimeScaling::change_s(begin_speed, limits));
-    fall_s = std::max(fall_s, TimeScaling::change_s(std::abs(trajectory.last_velocity(axis)), limits));
+  const auto& axes = trajectory.axes();
+  const double way_s = std::max(0.0, trajectory.end_s() - from_s);
+  bool rises = false;
+  bool falls = false;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    const RateLimits limits = limits_of(axes[axis].slot);
+    rises = rises || !TimeScaling::is_rest(trajectory.at(axis, from_s), limits);
+    falls = falls || !TimeScaling::is_rest(trajectory.end(axis), limits);
   }
-  return {std::max(0.0, trajectory.end_s() - from_s), rise_s, fall_s};
+  TimeScaling shortest(way_s, 1.0, 0.0, 0.0);
+  if (!rises && !falls) {
+    return shortest;
+  }
+  // Nearly the whole pace costs little time, and leaves some of every limit.
+  constexpr std::array peaks{0.95, 0.98, 0.99, 1.0};
+  bool is_first = true;
+  for (const double peak : peaks) {
+    double change_s = 0.0;
+    for (const TrajectoryAxis& axis : axes) {
+      change_s = std::max(change_s, TimeScaling::change_s(axis.top, limits_of(axis.slot), peak));
+    }
+    const TimeScaling scaling(way_s, peak, rises ? change_s : 0.0, falls ? change_s : 0.0);
+    if (is_first || scaling.duration_s() < shortest.duration_s()) {
+      shortest = scaling;
+      is_first = false;
+    }
+  }
+  return shortest;
 }
 
 }  // namespace interlock

@@ -4,14 +4,6 @@
 #include <cmath>
 
 namespace interlock {
-namespace {
-
-Setpoint in_counts(const MotionState& state, double counts_per_unit) noexcept {
-  return {state.position * counts_per_unit, state.velocity * counts_per_unit,
-          state.acceleration * counts_per_unit};
-}
-
-}  // namespace
 
 TrajectoryFollower::TrajectoryFollower(const RobotPlan& plan)
     : plan_(plan), lease_s_(plan.lease_ticks() * plan.period_s()) {}
@@ -31,6 +23,7 @@ bool TrajectoryFollower::begin(const ilk_snapshot_t& snapshot,
                                const std::array<double, ILK_SLOTS>& velocities_counts_per_s) noexcept {
   stage_ = Stage::approach;
   stage_s_ = 0.0;
+  rate_ = 1.0;
   axes_ = 0;
   double minimum_duration_s = 0.0;
   const auto now = [&](std::uint32_t slot) {
@@ -73,8 +66,9 @@ void TrajectoryFollower::begin_trajectory(const TimedTrajectory& timed) noexcept
   });
 }
 
-void TrajectoryFollower::advance(double time_s) noexcept {
+void TrajectoryFollower::advance(double time_s, double rate) noexcept {
   stage_s_ += time_s;
+  rate_ = rate;
   const TimedTrajectory* timed = trajectory();
   if (stage_ == Stage::trajectory && timed != nullptr) {
     trajectory_s_ = at_end() ? timed->end_s() : begun_s_ + pace_.passed_s(stage_s_);
@@ -111,6 +105,13 @@ const TrajectoryFollower::Points& TrajectoryFollower::points() noexcept {
   return points_;
 }
 
+/** As the clock sees it. */
+Setpoint TrajectoryFollower::in_counts(const MotionState& state, std::uint32_t slot) const noexcept {
+  const double counts_per_unit = plan_.axis[slot].counts_per_unit;
+  return {state.position * counts_per_unit, state.velocity * counts_per_unit * rate_,
+          state.acceleration * counts_per_unit * rate_ * rate_};
+}
+
 void TrajectoryFollower::point_along_approach() noexcept {
   const auto ahead = planner_.at(stage_s_ + lease_s_);
   for (std::size_t place = 0; place < ahead.size(); ++place) {
@@ -118,7 +119,7 @@ void TrajectoryFollower::point_along_approach() noexcept {
   }
   const auto now = planner_.at(stage_s_);
   for (std::size_t place = 0; place < now.size(); ++place) {
-    points_[slots_[place]].now = in_counts(now[place], plan_.axis[slots_[place]].counts_per_unit);
+    points_[slots_[place]].now = in_counts(now[place], slots_[place]);
   }
 }
 
@@ -132,7 +133,7 @@ void TrajectoryFollower::point_along_trajectory(const TimedTrajectory& timed) no
     const MotionState there = timed.at(axis, trajectory_s_);
     const MotionState now{there.position, pace * there.velocity,
                           pace * pace * there.acceleration + pace_per_s * there.velocity};
-    points_[slot] = {in_counts(now, counts_per_unit), timed.at(axis, ahead_s).position * counts_per_unit};
+    points_[slot] = {in_counts(now, slot), timed.at(axis, ahead_s).position * counts_per_unit};
   }
 }
 

@@ -3,9 +3,10 @@
  * Where each axis of a leg should be at any moment: a planned approach, and behind it the trajectory, if the
  * leg has one.
  *
- * Time is that of the walk: whoever walks may stand still for as long as he likes, and then begins anew from
- * wherever the axes are. Velocities do not leap where a stage begins: the approach begins at those of the
- * axes, and a trajectory that begins or ends in motion is come up to, and left, within the axes' rates.
+ * Time is that of the walk: whoever walks may go more slowly than the clock, for as long as it takes, or
+ * stand still and then begin anew from wherever the axes are. Velocities do not leap where a stage begins:
+ * the approach begins at those of the axes, and a trajectory that begins or ends in motion is come up to, and
+ * left, within the axes' rates.
  */
 #pragma once
 
@@ -45,8 +46,8 @@ class TrajectoryFollower {
   [[nodiscard]] bool begin(const ilk_snapshot_t& snapshot,
                            const std::array<double, ILK_SLOTS>& velocities_counts_per_s) noexcept;
 
-  /** Goes on to that time, which never runs back. */
-  void advance(double time_s) noexcept;
+  /** Goes on by that time of the path, which passes at `rate` of the clock: from 0 to 1. */
+  void advance(double time_s, double rate = 1.0) noexcept;
 
   /** Where each axis of the leg should be now, by slot; the points of others mean nothing. */
   [[nodiscard]] const Points& points() noexcept;
@@ -73,6 +74,7 @@ class TrajectoryFollower {
   [[nodiscard]] const TimedTrajectory* trajectory() const noexcept;
   void approach(const MotionState& now_counts, std::uint32_t slot, double target_counts) noexcept;
   void begin_trajectory(const TimedTrajectory& timed) noexcept;
+  [[nodiscard]] Setpoint in_counts(const MotionState& state, std::uint32_t slot) const noexcept;
   void point_along_approach() noexcept;
   void point_along_trajectory(const TimedTrajectory& trajectory) noexcept;
 
@@ -85,6 +87,7 @@ class TrajectoryFollower {
   std::array<std::uint32_t, TickPlanner::capacity> slots_{}; /**< of the axes of `approach_` */
   std::size_t axes_ = 0;
   double stage_s_ = 0.0;      /**< since approach or trajectory began */
+  double rate_ = 1.0;         /**< at which time of the path passes */
   double trajectory_s_ = 0.0; /**< time of the trajectory's rows to which the walk has come */
   double begun_s_ = 0.0;      /**< that at which its stage began */
   TimeScaling pace_;          /**< of the trajectory's time, from rest to rest */

@@ -38,8 +38,8 @@ class Slider {
   [[nodiscard]] double to_counts(double mm) const { return mm * counts_per_mm_; }
 
   /** Motion in mm of the axis as motion outwards. */
-  [[nodiscard]] CubicSegment outwards(CubicSegment motion) const {
-    return counts_per_mm_ > 0.0 ? motion : CubicSegment{-motion.start, -motion.jerk};
+  [[nodiscard]] MotionPiece outwards(const MotionPiece& motion) const {
+    return counts_per_mm_ > 0.0 ? motion : -motion;
   }
 
   /** Where it may stand. */
@@ -142,8 +142,8 @@ tl::expected<void, Refusal> check_within(const Pair& pair, const PositionRange& 
 }
 
 /** How a slider moves outwards from one row to the next; nothing when the trajectory does not move it. */
-std::optional<CubicSegment> motion_of(const Slider& slider, const TimedTrajectory& trajectory,
-                                      std::size_t row) {
+std::optional<MotionPiece> motion_of(const Slider& slider, const TimedTrajectory& trajectory,
+                                     std::size_t row) {
   const auto& axes = trajectory.axes();
   const auto moved = std::find_if(axes.begin(), axes.end(), [&slider](const TrajectoryAxis& axis) {
     return axis.slot == slider.axis().slot;
@@ -154,18 +154,16 @@ std::optional<CubicSegment> motion_of(const Slider& slider, const TimedTrajector
   return slider.outwards(trajectory.piece(static_cast<std::size_t>(moved - axes.begin()), row));
 }
 
-/** Judges what a trajectory does to a pair from one row to the next. Two cubics of the same time add to one.
- */
+/** Judges what a trajectory does to a pair from one row to the next. */
 tl::expected<void, Refusal> check_row(const Pair& pair, const TimedTrajectory& trajectory, std::size_t row) {
   const auto left = motion_of(pair.left, trajectory, row);
   const auto right = motion_of(pair.right, trajectory, row);
   if (!left && !right) {
     return {};
   }
-  const CubicSegment one = left.value_or(CubicSegment{});
-  const CubicSegment other = right.value_or(CubicSegment{});
-  const CubicSegment both{one.start + other.start, one.jerk + other.jerk};
-  PositionRange moved{both.start.position, both.start.position};
+  const MotionPiece both = left.value_or(MotionPiece{}) + right.value_or(MotionPiece{});
+  const double start = both.after(0.0).position;
+  PositionRange moved{start, start};
   both.widen(moved, trajectory.step_s(row));
   const PositionRange none;
   const PositionRange rest =

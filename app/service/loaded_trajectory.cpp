@@ -6,8 +6,8 @@ using nlohmann::json;
 
 json to_json(const LoadedTrajectory& loaded) {
   if (loaded.program == nullptr) {
-    return {
-        {"rows", 0}, {"duration_s", 0.0}, {"axes", json::array()}, {"author", nullptr}, {"loaded", nullptr}};
+    return {{"rows", 0},         {"duration_s", 0.0}, {"slowed_by", 1.0}, {"axes", json::array()},
+            {"author", nullptr}, {"loaded", nullptr}};
   }
   const TimedTrajectory& trajectory = std::get<TimedLeg>(loaded.program->legs.front()).trajectory;
   json axes = json::array();
@@ -17,23 +17,16 @@ json to_json(const LoadedTrajectory& loaded) {
                     {"unit", unit_name(axis.unit)},
                     {"lowest", axis.reach.lowest},
                     {"highest", axis.reach.highest},
-                    {"top_speed", axis.top_speed}});
+                    {"top_speed", axis.top.velocity},
+                    {"top_acceleration", axis.top.acceleration},
+                    {"top_jerk", axis.top.jerk}});
   }
   return {{"rows", trajectory.rows()},
           {"duration_s", trajectory.duration_s()},
+          {"slowed_by", trajectory.slowed_by()},
           {"axes", std::move(axes)},
           {"author", loaded.author},
           {"loaded", iso_8601(loaded.loaded)}};
-}
-
-VelocityLimits velocity_limits(const Robot& robot) {
-  VelocityLimits limits;
-  for (const Axis& axis : robot.axes) {
-    if (axis.motion) {
-      limits.emplace(axis.name, axis.motion->in_units(axis.counts_per_unit).velocity);
-    }
-  }
-  return limits;
 }
 
 }  // namespace interlock

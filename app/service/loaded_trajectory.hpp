@@ -27,7 +27,4 @@ struct LoadedTrajectory {
 /** Schema `LoadedTrajectory` of spec/openapi.yaml. */
 nlohmann::json to_json(const LoadedTrajectory& loaded);
 
-/** Largest speed of each axis, in its unit per second, as its rates allow. */
-VelocityLimits velocity_limits(const Robot& robot);
-
 }  // namespace interlock

@@ -103,7 +103,7 @@ tl::expected<TimedTrajectory, Problem> trajectory_of(const Robot& robot, const i
   if (rows.columns != columns.size()) {
     return fail(wrong_count(columns_of(robot, false), rows.columns));
   }
-  auto builder = TrajectoryBuilder::create(std::move(columns), robot, velocity_limits(robot));
+  auto builder = TrajectoryBuilder::create(std::move(columns), robot);
   if (!builder) {
     return fail(bad_row(builder.error()));
   }
@@ -123,7 +123,7 @@ tl::expected<TimedTrajectory, Problem> trajectory_of(const Robot& robot, const T
       columns.push_back(position_column(axis));
     }
   }
-  auto builder = TrajectoryBuilder::create(std::move(columns), robot, velocity_limits(robot));
+  auto builder = TrajectoryBuilder::create(std::move(columns), robot);
   if (!builder) {
     return fail(bad_row(builder.error()));
   }

@@ -20,7 +20,7 @@ Problem unreadable(const TrajectoryError& error) {
           .field = error.column,
           .line = static_cast<std::uint32_t>(error.line),
           .expected = error.expected,
-          .next_step = "Nothing was loaded. Mend the trajectory, and load it again."};
+          .next_step = "Nothing was loaded. Correct the trajectory, and load it again."};
 }
 
 boost::asio::awaitable<tl::expected<void, Problem>> load_trajectory(

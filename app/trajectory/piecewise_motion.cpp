@@ -5,7 +5,7 @@
 
 namespace interlock {
 
-void PiecewiseMotion::append(const CubicSegment& piece, double duration_s) {
+void PiecewiseMotion::append(const MotionPiece& piece, double duration_s) {
   if (duration_s > 0) {
     pieces_.push_back({duration_s_, piece});
     duration_s_ += duration_s;
@@ -18,7 +18,7 @@ void PiecewiseMotion::end_at(double position) {
 
 MotionState PiecewiseMotion::at(double time_s) const noexcept {
   if (!(time_s >= 0)) {
-    return pieces_.front().motion.start;
+    return pieces_.front().motion.after(0.0);
   }
   const auto next = std::ranges::upper_bound(pieces_, time_s, {}, &Piece::begin_s);
   const Piece& piece = *std::prev(next);
@@ -33,7 +33,7 @@ std::vector<double> PiecewiseMotion::boundaries_s() const {
 }
 
 PositionRange PiecewiseMotion::reach() const noexcept {
-  const double first = pieces_.front().motion.start.position;
+  const double first = pieces_.front().motion.after(0.0).position;
   PositionRange range{first, first};
   for (auto piece = pieces_.begin(); piece != pieces_.end(); ++piece) {
     const auto next = std::next(piece);

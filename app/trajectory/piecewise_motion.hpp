@@ -1,9 +1,11 @@
 /**
  * @file
- * Motion of one axis as pieces of constant jerk.
+ * Motion of one axis as polynomials in time, one after the other.
  */
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "robot/motion_rates.hpp"
@@ -21,15 +23,6 @@ struct MotionState {
   bool operator==(const MotionState&) const = default;
 };
 
-constexpr MotionState operator+(const MotionState& one, const MotionState& other) noexcept {
-  return {one.position + other.position, one.velocity + other.velocity,
-          one.acceleration + other.acceleration};
-}
-
-constexpr MotionState operator-(const MotionState& state) noexcept {
-  return {-state.position, -state.velocity, -state.acceleration};
-}
-
 /** Positions between which an axis may be, both ends in it. */
 struct PositionRange {
   double lowest = 0.0;
@@ -38,36 +31,55 @@ struct PositionRange {
   bool operator==(const PositionRange&) const = default;
 };
 
-/** Motion of constant jerk: a cubic in time, of which trajectories and plans are put together. */
-struct CubicSegment {
-  MotionState start;
-  double jerk = 0.0;
+/** Which derivative of the position. */
+enum class Rate : std::uint8_t { velocity = 1, acceleration = 2, jerk = 3 };
 
-  /** The cubic from one position and velocity to others (Hermite); `duration_s` is above 0. */
-  static CubicSegment between(double from, double from_velocity, double to, double to_velocity,
-                              double duration_s) noexcept;
+/** The largest magnitude of a rate, and when. */
+struct Peak {
+  double magnitude = 0.0;
+  double time_s = 0.0;
+};
 
-  /** The straight line from one position to another; `duration_s` is above 0. */
-  static CubicSegment line(double from, double to, double duration_s) noexcept;
+/** A polynomial of the fifth degree at most, of which trajectories and plans are put together. */
+class MotionPiece {
+ public:
+  /** Rest at 0. */
+  MotionPiece() = default;
+
+  /** Constant jerk from a state on. */
+  MotionPiece(const MotionState& start, double jerk) noexcept;
+
+  /** From one state to another; `duration_s` is above 0. Three derivatives at either end are six conditions:
+   * the quintic of Hermite. */
+  static MotionPiece between(const MotionState& from, const MotionState& to, double duration_s) noexcept;
 
   /** The state that long after the start. */
   [[nodiscard]] MotionState after(double time_s) const noexcept;
 
-  /** Widens `range` to the start and to where the motion turns; its end is the start of the next piece. */
+  /** Widens `range` to all positions from start to end, both in it. */
   void widen(PositionRange& range, double duration_s) const noexcept;
 
-  /** Largest speed from start to end, both in it. */
-  [[nodiscard]] double top_speed(double duration_s) const noexcept;
+  /** Raises `peak` to the largest magnitude of a rate from start to end, both in it; the time of a higher one
+   * counts from the start. True: it was higher. */
+  bool raise(Peak& peak, Rate rate, double duration_s) const noexcept;
+
+  /** Both motions at once. */
+  friend MotionPiece operator+(const MotionPiece& one, const MotionPiece& other) noexcept;
+  /** The other way. */
+  friend MotionPiece operator-(const MotionPiece& piece) noexcept;
+
+ private:
+  std::array<double, 6> terms_{}; /**< position = sum of terms_[n] t^n */
 };
 
 /** Widens `range` to hold `position`. */
 void widen(PositionRange& range, double position) noexcept;
 
-/** The motion of one axis as pieces of constant jerk, one after the other, and then rest. */
+/** The motion of one axis as pieces, one after the other, and then rest. */
 class PiecewiseMotion {
  public:
   /** Goes on with a piece; one that takes no time is left out. */
-  void append(const CubicSegment& piece, double duration_s);
+  void append(const MotionPiece& piece, double duration_s);
 
   /** Ends at rest. Whoever made the pieces answers for it that they lead there. */
   void end_at(double position);
@@ -87,7 +99,7 @@ class PiecewiseMotion {
  private:
   struct Piece {
     double begin_s = 0.0;
-    CubicSegment motion;
+    MotionPiece motion;
   };
 
   std::vector<Piece> pieces_;

@@ -2,10 +2,17 @@
  * @file
  * A trajectory that was written down: positions of axes, and for some of them velocities, at rising times.
  *
- * Between two rows an axis with velocities follows the cubic that meets positions and velocities of both
- * (Hermite); one without goes straight. Before the first row and from the last on it stands there. Times are
- * those of the rows. `TrajectoryBuilder` is the only way to one, so that whoever holds a trajectory holds one
- * that was checked as a whole.
+ * It passes through every row at its time, and between two rows smoothly: position, velocity and acceleration
+ * of an axis do not leap at a row, so that its jerk is finite.
+ *
+ * An axis without velocities follows the cubic spline through its rows. It is straight when they are two; at
+ * both ends its acceleration goes on as in the next row, so that rows of a motion that was cut anywhere lead
+ * along that motion. An axis with velocities follows quintics that meet these, too, and whose jerk does not
+ * leap at a row either; its acceleration at both ends is 0 where the velocity is, else that of the cubic
+ * which meets positions and velocities of both rows.
+ *
+ * Before the first row and from the last on it stands there. `TrajectoryBuilder` is the only way to one, so
+ * that whoever holds a trajectory holds one that was checked as a whole.
  *
  * Units are those of the axes (mm or rad) and seconds.
  */
@@ -13,8 +20,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -23,42 +28,43 @@
 
 namespace interlock {
 
-/** An axis of a trajectory. */
+/** An axis of a trajectory; what holds between the rows as well. */
 struct TrajectoryAxis {
   std::uint32_t slot = 0;
   std::string name;
   Unit unit = Unit::mm;
-  std::size_t position_place = 0;            /**< in a row */
-  std::optional<std::size_t> velocity_place; /**< in a row, if velocities are given */
-  PositionRange reach;    /**< the positions that it passes through, those between the rows as well */
-  double top_speed = 0.0; /**< between the rows as well */
+  PositionRange reach; /**< the positions that it passes through */
+  RateLimits top;      /**< the largest magnitudes of its rates */
 };
 
 /** Rows of time and positions, and what lies between them. */
 class TimedTrajectory {
  public:
-  [[nodiscard]] std::size_t rows() const noexcept { return numbers_.size() / row_size_; }
+  [[nodiscard]] std::size_t rows() const noexcept { return times_s_.size(); }
 
   /** Of the first row. */
-  [[nodiscard]] double begin_s() const noexcept { return time_s(0); }
+  [[nodiscard]] double begin_s() const noexcept { return times_s_.front(); }
 
   /** Of the last row. */
-  [[nodiscard]] double end_s() const noexcept { return time_s(rows() - 1); }
+  [[nodiscard]] double end_s() const noexcept { return times_s_.back(); }
 
   [[nodiscard]] double duration_s() const noexcept { return end_s() - begin_s(); }
 
   /** In the order of their columns. */
   [[nodiscard]] const std::vector<TrajectoryAxis>& axes() const noexcept { return axes_; }
 
+  /** How many times as long it takes as it was written; 1 unless it was slowed down. */
+  [[nodiscard]] double slowed_by() const noexcept { return slowed_by_; }
+
   /** The state of an axis, by its place among `axes`. A time that is no number counts as before the first
    * row. */
   [[nodiscard]] MotionState at(std::size_t axis, double time_s) const noexcept;
 
-  /** How an axis moves from a row to the next; from the last row on it stands. */
-  [[nodiscard]] CubicSegment piece(std::size_t axis, std::size_t row) const noexcept;
+  /** How an axis comes to the last row; at rest when that is the only one. */
+  [[nodiscard]] const MotionState& end(std::size_t axis) const noexcept { return state(rows() - 1, axis); }
 
-  /** How fast an axis, by its place among `axes`, comes to the last row; 0 when that is the only one. */
-  [[nodiscard]] double last_velocity(std::size_t axis) const noexcept;
+  /** How an axis moves from a row to the next; from the last row on it stands. */
+  [[nodiscard]] MotionPiece piece(std::size_t axis, std::size_t row) const noexcept;
 
   /** From a row to the next; 0 for the last row. */
   [[nodiscard]] double step_s(std::size_t row) const noexcept;
@@ -66,18 +72,17 @@ class TimedTrajectory {
  private:
   friend class TrajectoryBuilder;
 
-  [[nodiscard]] std::span<const double> row(std::size_t index) const noexcept {
-    return std::span(numbers_).subspan(index * row_size_, row_size_);
+  [[nodiscard]] const MotionState& state(std::size_t row, std::size_t axis) const noexcept {
+    return states_[row * axes_.size() + axis];
   }
-  [[nodiscard]] double time_s(std::size_t index) const noexcept { return row(index).front(); }
+  [[nodiscard]] MotionState& state(std::size_t row, std::size_t axis) noexcept {
+    return states_[row * axes_.size() + axis];
+  }
 
   std::vector<TrajectoryAxis> axes_;
-  std::size_t row_size_ = 1;
-  std::vector<double> numbers_; /**< row by row, each with its time first */
+  std::vector<double> times_s_;     /**< of the rows */
+  std::vector<MotionState> states_; /**< row by row, in each the axes */
+  double slowed_by_ = 1.0;
 };
-
-/** The motion of an axis from one row to a later one. */
-CubicSegment piece_between(const TrajectoryAxis& axis, std::span<const double> from,
-                           std::span<const double> to) noexcept;
 
 }  // namespace interlock

@@ -1,9 +1,11 @@
 #include "trajectory/trajectory_builder.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
+#include "trajectory/smooth_rows.hpp"
 #include "trajectory/trajectory_header.hpp"
 
 namespace interlock {
@@ -24,24 +26,26 @@ std::string allowed_text(const Axis& axis) {
          ", its soft limits less coast";
 }
 
-std::string speed_text(double velocity, const Axis& axis) {
-  return number_text(velocity) + ' ' + std::string(unit_name(axis.unit)) + "/s";
-}
-
-TrajectoryResult<void> check_limits(const VelocityLimits& limits, const Robot& robot) {
-  TrajectoryResult<void> checked;
-  for (auto limit = limits.begin(); checked && limit != limits.end(); ++limit) {
-    const auto& [name, velocity] = *limit;
-    if (robot.find(name) == nullptr) {
-      return tl::unexpected(TrajectoryError{Code::unknown_axis, 0, name + " velocity limit",
-                                            robot.name + " has no such axis", "an axis of the robot"});
-    }
-    checked = check_within(name + " velocity limit", velocity, smallest_rate, largest_rate);
-  }
-  return checked;
-}
-
 }  // namespace
+
+/** A rate as it is judged and as errors speak of it. */
+struct TrajectoryBuilder::RateRule {
+  Rate rate;
+  double RateLimits::* of;
+  Code code;
+  std::string_view per_time;
+  std::string_view verdict;
+
+  [[nodiscard]] std::string text(double value, const Axis& axis) const {
+    return number_text(value) + ' ' + std::string(unit_name(axis.unit)) + std::string(per_time);
+  }
+};
+
+constexpr std::array<TrajectoryBuilder::RateRule, 3> TrajectoryBuilder::rate_rules{
+    RateRule{Rate::velocity, &RateLimits::velocity, Code::too_fast, "/s", "too fast"},
+    RateRule{Rate::acceleration, &RateLimits::acceleration, Code::too_much_acceleration, "/s^2",
+             "too much acceleration"},
+    RateRule{Rate::jerk, &RateLimits::jerk, Code::too_much_jerk, "/s^3", "too much jerk"}};
 
 TrajectoryError wrong_columns(std::size_t line, std::size_t fields, std::span<const std::string> columns) {
   const bool missing = fields < columns.size();
@@ -52,47 +56,32 @@ TrajectoryError wrong_columns(std::size_t line, std::size_t fields, std::span<co
 }
 
 TrajectoryResult<TrajectoryBuilder> TrajectoryBuilder::create(std::vector<std::string> columns,
-                                                              const Robot& robot,
-                                                              const VelocityLimits& limits) {
-  return check_limits(limits, robot)
-      .and_then([&] { return read_header(columns, robot); })
-      .map([&](const std::vector<AxisColumns>& axes) {
-        TrajectoryBuilder builder;
-        builder.trajectory_.row_size_ = columns.size();
-        for (const auto& [axis, position, velocity] : axes) {
-          const auto limit = limits.find(axis->name);
-          builder.rules_.push_back({*axis, limit == limits.end() ? largest_rate : limit->second});
-          builder.trajectory_.axes_.push_back(
-              {axis->slot, axis->name, axis->unit, position, velocity, {}, 0.0});
-        }
-        builder.ways_.resize(axes.size());
-        builder.columns_ = std::move(columns);
-        return builder;
-      });
+                                                              const Robot& robot, Timing timing) {
+  return read_header(columns, robot).map([&](const std::vector<AxisColumns>& axes) {
+    TrajectoryBuilder builder;
+    builder.timing_ = timing;
+    for (const auto& [axis, position, velocity] : axes) {
+      builder.rules_.push_back({*axis, axis->motion->in_units(axis->counts_per_unit), position, velocity});
+      builder.trajectory_.axes_.push_back({axis->slot, axis->name, axis->unit, {}, {}});
+    }
+    builder.columns_ = std::move(columns);
+    return builder;
+  });
 }
 
 TrajectoryResult<void> TrajectoryBuilder::add(std::span<const double> row) {
   Checked checked = check_numbers(row).and_then([&] { return check_time(row.front()); });
-  for (std::size_t axis = 0; checked && axis < rules_.size(); ++axis) {
-    checked = check_state(axis, row);
-  }
-  for (std::size_t axis = 0; checked && axis < rules_.size(); ++axis) {
-    ways_[axis] = way_to(axis, row);
-    checked = check_way(axis, ways_[axis]);
+  for (auto rules = rules_.begin(); checked && rules != rules_.end(); ++rules) {
+    checked = check_position(*rules, row[rules->position_place]);
   }
   if (!checked) {
     return checked;
   }
-  const bool first = trajectory_.rows() == 0;
-  for (std::size_t place = 0; place < rules_.size(); ++place) {
-    TrajectoryAxis& axis = trajectory_.axes_[place];
-    const auto& [reach, top_speed] = ways_[place];
-    axis.reach = first ? reach : axis.reach;
-    widen(axis.reach, reach.lowest);
-    widen(axis.reach, reach.highest);
-    axis.top_speed = std::max(axis.top_speed, top_speed);
+  trajectory_.times_s_.push_back(row.front());
+  for (const AxisRules& rules : rules_) {
+    const auto velocity = rules.velocity_place;
+    trajectory_.states_.push_back({row[rules.position_place], velocity ? row[*velocity] : 0.0, 0.0});
   }
-  trajectory_.numbers_.insert(trajectory_.numbers_.end(), row.begin(), row.end());
   return {};
 }
 
@@ -101,7 +90,11 @@ TrajectoryResult<TimedTrajectory> TrajectoryBuilder::finish() && {
     return tl::unexpected(TrajectoryError{Code::empty, line(), columns_.front(), "no row",
                                           "at least one row below the header"});
   }
-  return std::move(trajectory_);
+  for (std::size_t axis = 0; axis < rules_.size(); ++axis) {
+    smooth(axis);
+  }
+  look_between_rows();
+  return judge().and_then([&] { return slow_down(); }).map([&] { return std::move(trajectory_); });
 }
 
 TrajectoryResult<void> TrajectoryBuilder::check_numbers(std::span<const double> row) const {
@@ -110,8 +103,8 @@ TrajectoryResult<void> TrajectoryBuilder::check_numbers(std::span<const double> 
   }
   const auto bad = std::ranges::find_if_not(row, [](double number) { return std::isfinite(number); });
   if (bad != row.end()) {
-    return refused(Code::not_finite, static_cast<std::size_t>(bad - row.begin()), "not a finite number",
-                   "a number");
+    return refused(Code::not_finite, trajectory_.rows(), static_cast<std::size_t>(bad - row.begin()),
+                   "not a finite number", "a number");
   }
   if (trajectory_.rows() == most_trajectory_rows) {
     return tl::unexpected(TrajectoryError{Code::too_large, line(), "", "too many rows",
@@ -121,71 +114,140 @@ TrajectoryResult<void> TrajectoryBuilder::check_numbers(std::span<const double> 
 }
 
 TrajectoryResult<void> TrajectoryBuilder::check_time(double time_s) const {
+  const std::size_t row = trajectory_.rows();
   if (time_s < 0 || time_s > latest_time_s) {
-    return refused(Code::out_of_range, 0, number_text(time_s) + " is out of range",
+    return refused(Code::out_of_range, row, 0, number_text(time_s) + " is out of range",
                    "0 to " + number_text(latest_time_s));
   }
-  if (trajectory_.rows() > 0 && time_s < trajectory_.end_s() + shortest_step_s) {
-    return refused(Code::unsorted_times, 0,
+  if (row > 0 && time_s < trajectory_.end_s() + shortest_step_s) {
+    return refused(Code::unsorted_times, row, 0,
                    number_text(time_s) + " does not follow " + number_text(trajectory_.end_s()),
                    "times that rise by a microsecond at least");
   }
   return {};
 }
 
-TrajectoryResult<void> TrajectoryBuilder::check_state(std::size_t axis, std::span<const double> row) const {
-  const auto& [rules, max_velocity] = rules_[axis];
-  const TrajectoryAxis& columns = trajectory_.axes_[axis];
-  const double position = row[columns.position_place];
-  if (!accepts(rules, position)) {
-    return refused(Code::out_of_range, columns.position_place, number_text(position) + " is out of range",
-                   allowed_text(rules));
-  }
-  if (columns.velocity_place &&
-      std::abs(row[*columns.velocity_place]) > max_velocity * (1 + velocity_slack)) {
-    return refused(Code::too_fast, *columns.velocity_place,
-                   speed_text(row[*columns.velocity_place], rules) + " is too fast",
-                   speed_text(max_velocity, rules) + " at most, either way");
+TrajectoryResult<void> TrajectoryBuilder::check_position(const AxisRules& rules, double position) const {
+  if (!accepts(rules.axis, position)) {
+    return refused(Code::out_of_range, trajectory_.rows(), rules.position_place,
+                   number_text(position) + " is out of range", allowed_text(rules.axis));
   }
   return {};
 }
 
-TrajectoryBuilder::Way TrajectoryBuilder::way_to(std::size_t axis, std::span<const double> row) const {
-  const TrajectoryAxis& columns = trajectory_.axes_[axis];
-  const double position = row[columns.position_place];
-  Way way{{position, position}, 0.0};
-  if (const std::size_t rows = trajectory_.rows(); rows > 0) {
-    const std::span<const double> last = trajectory_.row(rows - 1);
-    const CubicSegment piece = piece_between(columns, last, row);
-    const double duration_s = row.front() - last.front();
-    piece.widen(way.reach, duration_s);
-    way.top_speed = piece.top_speed(duration_s);
+void TrajectoryBuilder::smooth(std::size_t axis) {
+  const std::size_t rows = trajectory_.rows();
+  std::vector<MotionState> states(rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    states[row] = trajectory_.state(row, axis);
   }
-  return way;
+  if (rows == 1) {
+    states.front().velocity = 0.0;  // it stands
+  }
+  (rules_[axis].velocity_place ? smooth_velocities : smooth_positions)(trajectory_.times_s_, states);
+  for (std::size_t row = 0; row < rows; ++row) {
+    trajectory_.state(row, axis) = states[row];
+  }
 }
 
-TrajectoryResult<void> TrajectoryBuilder::check_way(std::size_t axis, const Way& way) const {
-  const auto& [rules, max_velocity] = rules_[axis];
-  const std::size_t column = trajectory_.axes_[axis].position_place;
-  for (const double position : {way.reach.lowest, way.reach.highest}) {
-    if (!accepts(rules, position)) {
-      return refused(Code::out_of_range, column,
-                     number_text(position) + " on the way from the row before is out of range",
-                     allowed_text(rules));
+void TrajectoryBuilder::look_between_rows() {
+  for (std::size_t axis = 0; axis < rules_.size(); ++axis) {
+    const double first = trajectory_.state(0, axis).position;
+    trajectory_.axes_[axis].reach = {first, first};
+  }
+  for (std::size_t row = 0; row + 1 < trajectory_.rows(); ++row) {
+    for (std::size_t axis = 0; axis < rules_.size(); ++axis) {
+      look_at_way(axis, row);
     }
   }
-  if (way.top_speed > max_velocity * (1 + velocity_slack)) {
-    return refused(Code::too_fast, column,
-                   speed_text(way.top_speed, rules) + " on the way from the row before is too fast",
-                   speed_text(max_velocity, rules) + " at most, either way");
+}
+
+void TrajectoryBuilder::look_at_way(std::size_t axis, std::size_t row) {
+  const AxisRules& rules = rules_[axis];
+  PositionRange& reach = trajectory_.axes_[axis].reach;
+  const MotionPiece piece = trajectory_.piece(axis, row);
+  piece.widen(reach, trajectory_.step_s(row));
+  for (const double position : {reach.lowest, reach.highest}) {
+    if (!outside_ && !accepts(rules.axis, position)) {
+      outside_ = refused(Code::out_of_range, row + 1, rules.position_place,
+                         number_text(position) + " on the way from the row before is out of range",
+                         allowed_text(rules.axis))
+                     .value();
+    }
+  }
+  for (const RateRule& rule : rate_rules) {
+    look_at_rate(axis, row, rule, piece);
+  }
+}
+
+/** The n-th derivative falls with the n-th power of the time that all of it takes. */
+void TrajectoryBuilder::look_at_rate(std::size_t axis, std::size_t row, const RateRule& rule,
+                                     const MotionPiece& piece) {
+  const AxisRules& rules = rules_[axis];
+  double& top = trajectory_.axes_[axis].top.*rule.of;
+  Peak peak{top, 0.0};
+  if (!piece.raise(peak, rule.rate, trajectory_.step_s(row))) {
+    return;
+  }
+  top = peak.magnitude;
+  const double limit = rules.limits.*rule.of;
+  const double slowness = std::pow(top / limit, 1.0 / static_cast<double>(rule.rate));
+  if (top <= limit * (1 + rate_slack) || slowness <= slowness_) {
+    return;
+  }
+  slowness_ = slowness;
+  const bool on_the_way = peak.time_s > 0.0;
+  too_fast_ =
+      refused(rule.code, on_the_way ? row + 1 : row, rules.position_place,
+              rule.text(top, rules.axis) + " at " + number_text(trajectory_.times_s_[row] + peak.time_s) +
+                  " s" + (on_the_way ? ", on the way from the row before," : "") + " is " +
+                  std::string(rule.verdict),
+              rule.text(limit, rules.axis) + " at most, either way")
+          .value();
+}
+
+/** A rate first: where an axis is thrown about it may well leave its range. */
+TrajectoryResult<void> TrajectoryBuilder::judge() {
+  const bool refuses_speed = too_fast_ && timing_ == Timing::as_written;
+  if (refuses_speed && !outside_) {
+    const double to_a_percent = std::ceil(slowness_ * 100.0) / 100.0;
+    too_fast_->expected +=
+        "; slowed down to fit, it would take " + number_text(to_a_percent) + " times as long";
+  }
+  if (refuses_speed || outside_) {
+    return tl::unexpected(refuses_speed ? *too_fast_ : *outside_);
   }
   return {};
 }
 
-tl::unexpected<TrajectoryError> TrajectoryBuilder::refused(Code code, std::size_t column, std::string problem,
-                                                           std::string expected) const {
+TrajectoryResult<void> TrajectoryBuilder::slow_down() {
+  const double begin_s = trajectory_.begin_s();
+  const double end_s = begin_s + trajectory_.duration_s() * slowness_;
+  if (end_s > latest_time_s) {
+    return refused(Code::out_of_range, trajectory_.rows() - 1, 0,
+                   number_text(end_s) + ", slowed down to fit, is out of range",
+                   "0 to " + number_text(latest_time_s));
+  }
+  for (double& time_s : trajectory_.times_s_) {
+    time_s = begin_s + (time_s - begin_s) * slowness_;
+  }
+  for (MotionState& state : trajectory_.states_) {
+    state.velocity /= slowness_;
+    state.acceleration /= slowness_ * slowness_;
+  }
+  for (TrajectoryAxis& axis : trajectory_.axes_) {
+    for (const RateRule& rule : rate_rules) {
+      axis.top.*rule.of /= std::pow(slowness_, static_cast<double>(rule.rate));
+    }
+  }
+  trajectory_.slowed_by_ = slowness_;
+  return {};
+}
+
+tl::unexpected<TrajectoryError> TrajectoryBuilder::refused(Code code, std::size_t row, std::size_t column,
+                                                           std::string problem, std::string expected) const {
   return tl::unexpected(
-      TrajectoryError{code, line(), columns_[column], std::move(problem), std::move(expected)});
+      TrajectoryError{code, line_of(row), columns_[column], std::move(problem), std::move(expected)});
 }
 
 }  // namespace interlock

@@ -125,15 +125,14 @@ TrajectoryResult<void> check_size(std::string_view text) {
 
 }  // namespace
 
-TrajectoryResult<TimedTrajectory> read_trajectory(std::string_view text, const Robot& robot,
-                                                  const VelocityLimits& limits) {
+TrajectoryResult<TimedTrajectory> read_trajectory(std::string_view text, const Robot& robot, Timing timing) {
   if (text.starts_with(byte_order_mark)) {
     text.remove_prefix(byte_order_mark.size());
   }
   return check_size(text)
       .and_then([&] { return header_of(take_line(text), robot); })
       .and_then([&](std::vector<std::string>&& columns) {
-        return TrajectoryBuilder::create(std::move(columns), robot, limits);
+        return TrajectoryBuilder::create(std::move(columns), robot, timing);
       })
       .and_then([&](TrajectoryBuilder&& builder) { return read_rows(text, std::move(builder)); });
 }

@@ -23,6 +23,6 @@ inline constexpr std::size_t most_trajectory_bytes = std::size_t{64} << 20;
 
 /** The trajectory, or the first thing in the text that keeps it from being one; see `TrajectoryBuilder`. */
 TrajectoryResult<TimedTrajectory> read_trajectory(std::string_view text, const Robot& robot,
-                                                  const VelocityLimits& limits = {});
+                                                  Timing timing = Timing::as_written);
 
 }  // namespace interlock

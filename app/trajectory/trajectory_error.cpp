@@ -14,6 +14,10 @@ std::string_view code_name(TrajectoryError::Code code) {
       return "OUT_OF_RANGE";
     case TrajectoryError::Code::too_fast:
       return "TOO_FAST";
+    case TrajectoryError::Code::too_much_acceleration:
+      return "TOO_MUCH_ACCELERATION";
+    case TrajectoryError::Code::too_much_jerk:
+      return "TOO_MUCH_JERK";
     case TrajectoryError::Code::empty:
       return "EMPTY";
     case TrajectoryError::Code::too_large:

@@ -16,20 +16,22 @@ namespace interlock {
 struct TrajectoryError {
   /** Kinds of refusal. */
   enum class Code {
-    not_finite,     /**< NaN or infinity came in */
-    out_of_range,   /**< a number beyond its limits: soft limits less coast, or where it means something */
-    too_fast,       /**< a velocity, asked for or implied, above the axis' limit */
-    empty,          /**< no text, or no row below the header */
-    too_large,      /**< more rows or bytes than a trajectory may have */
-    bad_header,     /**< a column that is no time, position or velocity */
-    unknown_axis,   /**< the robot has no axis of that name */
-    repeated_axis,  /**< a second column for the same */
-    wrong_unit,     /**< not the unit of the axis */
-    wrong_columns,  /**< a row with more or fewer fields than the header */
-    not_a_number,   /**< a field that is no number */
-    unsorted_times, /**< a time that does not follow the one before */
-    no_path,        /**< an axis without rates for a motion along a path */
-    no_solution,    /**< the planner found no motion */
+    not_finite,   /**< NaN or infinity came in */
+    out_of_range, /**< a number beyond its limits: soft limits less coast, or where it means something */
+    too_fast,     /**< a velocity, given or between rows, above the axis' rate */
+    too_much_acceleration, /**< an acceleration between rows above it */
+    too_much_jerk,         /**< a jerk between rows above it */
+    empty,                 /**< no text, or no row below the header */
+    too_large,             /**< more rows or bytes than a trajectory may have */
+    bad_header,            /**< a column that is no time, position or velocity */
+    unknown_axis,          /**< the robot has no axis of that name */
+    repeated_axis,         /**< a second column for the same */
+    wrong_unit,            /**< not the unit of the axis */
+    wrong_columns,         /**< a row with more or fewer fields than the header */
+    not_a_number,          /**< a field that is no number */
+    unsorted_times,        /**< a time that does not follow the one before */
+    no_path,               /**< an axis without rates for a motion along a path */
+    no_solution,           /**< the planner found no motion */
   };
 
   Code code = Code::not_finite;

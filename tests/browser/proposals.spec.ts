@@ -1,4 +1,4 @@
-/** One proposal as a whole, its ghost in 3D, and a trajectory file that is wrong and then mended. */
+/** One proposal as a whole, its ghost in 3D, and a trajectory file that is wrong and then corrected. */
 import type { Page } from "@playwright/test";
 import { expect, test } from "./fixtures";
 
@@ -19,7 +19,7 @@ async function setEveryHome(page: Page): Promise<void> {
   expect(new Set(answers)).toEqual(new Set([200]));
 }
 
-test("a file that is wrong shows where, a mended one is proposed, looked at and rejected", async ({
+test("a file that is wrong shows where, a fast one is slowed down, a right one is proposed, looked at and rejected", async ({
   robot,
 }) => {
   await robot.unlockRobot();
@@ -36,7 +36,13 @@ test("a file that is wrong shows where, a mended one is proposed, looked at and 
   await expect(refusal).toContainText("Line 3");
   await expect(refusal.getByRole("cell", { name: "▲ 900" })).toBeVisible();
 
-  await chosen.setInputFiles(csv("mended.csv", "0,0.05\n1,0.2\n2,0.1\n"));
+  await chosen.setInputFiles(csv("fast.csv", "0,0.05\n0.1,0.2\n0.2,0.1\n"));
+  await expect(refusal).toContainText("fast.csv was not loaded: TOO_FAST");
+  await files.getByRole("button", { name: "Slow it down to fit" }).click();
+  await expect(refusal).toHaveCount(0);
+  await expect(files).toContainText(/slowed down to \d+\.\d\d times as long, loaded by admin/);
+
+  await chosen.setInputFiles(csv("corrected.csv", "0,0.05\n1,0.2\n2,0.1\n"));
   await expect(refusal).toHaveCount(0);
   await expect(files).toContainText("3 rows, 2.0 s");
   await files.getByRole("button", { name: "Propose it" }).click();

@@ -248,7 +248,7 @@ def bad_arrays(axes: list[dict]) -> dict[str, tuple[Rows, str]]:
         "no number": (rows({20: [0.19, float("nan"), *here[1:]]}), "NDARRAY, row 20, column 2: "),
         "too few columns": (rows({}, width=len(here)), f"Row 1, {last}: "),
         "too many columns": (Rows([[0, *here, 1]], "TRAJECTORY"), "Row 1, column 9: "),
-        "too fast": (rows({2: [0.001, here[0] - 0.1, *here[1:]]}), f"Row 2, {first}: "),
+        "too fast": (rows({2: [0.001, here[0] - 0.1, *here[1:]]}), f"Row 1, {first}: "),
         "empty": (Rows([[]], "TRAJECTORY"), "NDARRAY: "),
     }
 

@@ -1,5 +1,7 @@
 """Several axes together on real processes: coordinated motion, a trajectory, a pose, and what ends them."""
 
+from typing import Any
+
 import pytest
 from bad_trajectories import BAD_TRAJECTORIES
 from conftest import StackFactory
@@ -89,6 +91,26 @@ def test_a_trajectory_from_a_file_waits_for_approval_and_is_followed(stack: Stac
     assert_at(robot, YAW, -0.2)
     assert_at(robot, INSERTION, 8.0)
     assert robot.api.get("/api/trajectory").json()["rows"] == 0
+
+
+def test_a_trajectory_that_is_too_fast_is_loaded_slowed_down_when_its_author_asks(
+    stack: StackFactory,
+) -> None:
+    robot = ready(stack)
+    rows = "time [s],yaw [rad]\n" + "".join(f"{n / 10},{-0.3 - 0.05 * (n % 2)}\n" for n in range(10))
+    sent: dict[str, Any] = {"content": rows, "headers": {"Content-Type": "text/csv"}}
+    refused = robot.api.put("/api/trajectory", **sent)
+    assert (refused.status_code, refused.json()["code"]) == (422, "TOO_MUCH_ACCELERATION"), refused.text
+    unknown = robot.api.put("/api/trajectory", params={"timing": "faster"}, **sent)
+    assert (unknown.status_code, unknown.json()["field"]) == (422, "timing"), unknown.text
+    loaded = robot.api.put("/api/trajectory", params={"timing": "slowed_to_fit"}, **sent)
+    assert loaded.status_code == 200, loaded.text
+    assert loaded.json()["slowed_by"] > 1.0
+    assert loaded.json()["duration_s"] == pytest.approx(0.9 * loaded.json()["slowed_by"])
+    number = approve(robot, propose(robot, kind="trajectory"))
+    press(robot)
+    wait_for_proposal(robot, number, "done")
+    assert_at(robot, YAW, -0.35)
 
 
 def test_a_jammed_axis_ends_the_path_of_all(stack: StackFactory) -> None:

@@ -1,6 +1,7 @@
 """`interlock trajectory check`: a file in, one JSON object out."""
 
 import json
+import re
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -8,9 +9,10 @@ from typing import Any
 import pytest
 from bad_trajectories import BAD_TRAJECTORIES
 from bare_kernel import BIN, DEADLINE_S
-from test_run import DONE, PRECONDITION, REFUSED, USAGE
+from test_run import DONE, PRECONDITION, REFUSED
 
 GOOD = "time [s],yaw [rad],insertion [mm],insertion [mm/s]\n0,-0.5,10,0\n2,-0.7,14,0\n"
+ZIGZAG = "time [s],yaw [rad]\n" + "".join(f"{n / 10},{-0.7 - 0.05 * (n % 2)}\n" for n in range(10))
 
 
 def check(*arguments: str | Path, robot: str = "neuro") -> tuple[int, dict[str, Any] | None, str]:
@@ -27,7 +29,7 @@ def file(tmp_path: Path) -> Path:
     return path
 
 
-def test_a_good_trajectory_is_told_with_its_reach(file: Path) -> None:
+def test_a_good_trajectory_is_shown_with_its_reach_and_rates(file: Path) -> None:
     code, answer, message = check(file)
     assert (code, message) == (DONE, "")
     assert answer is not None
@@ -37,8 +39,11 @@ def test_a_good_trajectory_is_told_with_its_reach(file: Path) -> None:
         "lowest": -0.7,
         "highest": -0.5,
         "top_speed": pytest.approx(0.1),
+        "top_acceleration": pytest.approx(0.0, abs=1e-9),
+        "top_jerk": pytest.approx(0.0, abs=1e-9),
     }
-    assert answer["axes"]["insertion"]["top_speed"] == pytest.approx(3.0)
+    assert answer["slowed_by"] == 1.0
+    assert answer["axes"]["insertion"]["top_speed"] == pytest.approx(3.75)
 
 
 def test_a_bad_row_is_refused_by_line_and_column(file: Path) -> None:
@@ -58,13 +63,19 @@ def test_an_axis_of_another_robot_is_refused(file: Path) -> None:
     assert (answer["error"]["code"], answer["error"]["column"]) == ("UNKNOWN_AXIS", "yaw [rad]")
 
 
-def test_a_limit_of_velocity_comes_from_the_command_line(file: Path) -> None:
-    assert check("--max-velocity", "yaw=0.1", "--max-velocity", "insertion=3", file)[0] == DONE
-    code, answer, _ = check("--max-velocity", "insertion=2.9", file)
+def test_a_trajectory_that_is_too_fast_is_refused_or_slowed_down_as_its_author_chooses(file: Path) -> None:
+    file.write_text(ZIGZAG)
+    code, answer, message = check(file)
     assert code == REFUSED
     assert answer is not None
-    assert (answer["error"]["code"], answer["error"]["line"]) == ("TOO_FAST", 3)
-    assert check("--max-velocity", "insertion", file)[0] == USAGE
+    assert (answer["error"]["code"], answer["error"]["column"]) == ("TOO_MUCH_ACCELERATION", "yaw [rad]")
+    asked = re.search(r"slowed down to fit, it would take ([0-9.]+) times as long", message)
+    assert asked is not None, message
+    code, answer, _ = check("--slow-to-fit", file)
+    assert code == DONE
+    assert answer is not None
+    assert answer["slowed_by"] == pytest.approx(float(asked[1]), abs=0.01)
+    assert answer["duration_s"] == pytest.approx(0.9 * answer["slowed_by"])
 
 
 @pytest.mark.parametrize("name", BAD_TRAJECTORIES)

@@ -1,5 +1,9 @@
+#include <array>
+#include <string_view>
+
 #include "http/routes.hpp"
 #include "service/drafts.hpp"
+#include "service/fields.hpp"
 #include "service/reply.hpp"
 #include "trajectory/trajectory_csv.hpp"
 
@@ -9,6 +13,22 @@ namespace {
 using Answering = boost::asio::awaitable<Reply>;
 using boost::beast::http::verb;
 using nlohmann::json;
+
+constexpr std::array<std::string_view, 2> timings{"as_written", "slowed_to_fit"};
+
+/** `?timing=slowed_to_fit`; as written without it. */
+tl::expected<Timing, Problem> timing_of(const Request& request) {
+  const auto query = known_query(request, {"timing"});
+  if (!query) {
+    return fail(query.error());
+  }
+  Fields fields(*query, {"timing"});
+  const auto timing = fields.choice("timing", timings);
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  return timing == timings.back() ? Timing::slowed_to_fit : Timing::as_written;
+}
 
 }  // namespace
 
@@ -21,8 +41,12 @@ TrajectoryRoutes::TrajectoryRoutes(const Context& context, Router& router) : con
 Reply TrajectoryRoutes::show() const { return Success{.body = to_json(context_.trajectory)}; }
 
 Answering TrajectoryRoutes::load(const Call& call) const {
-  auto work = [text = call.request.body(), robot = &context_.robot] {
-    return read_trajectory(text, *robot, velocity_limits(*robot));
+  const auto timing = timing_of(call.request);
+  if (!timing) {
+    co_return fail(timing.error());
+  }
+  auto work = [text = call.request.body(), robot = &context_.robot, timing = *timing] {
+    return read_trajectory(text, *robot, timing);
   };
   auto done = co_await context_.work.run(std::move(work));
   if (!done) {

@@ -1,10 +1,23 @@
 #include "modes/path/mode.hpp"
 
+#include <algorithm>
+
 namespace interlock {
 namespace {
 
-/** For axes that lag behind the end of their path; the slowest settling seen on the plant takes a tenth. */
+/** For axes that lag behind the end of their path; the slowest settling seen on the plant takes a tenth. Also
+ * for the time of a path that an axis holds up. */
 constexpr double settle_s = 5.0;
+
+/** Shares of the following error: up to the first an axis is behind its path as axes are, at the second the
+ * path waits for it. */
+constexpr double usual_lag = 0.4;
+constexpr double longest_lag = 0.8;
+/** Within which the time of the path follows the axis that is farthest behind: several times the lag of a
+ * motor, so that a count more or less does not shake the others. */
+constexpr double slowing_s = 0.05;
+/** Below it the time of the path stands. */
+constexpr double least_rate = 0.02;
 
 }  // namespace
 
@@ -59,6 +72,8 @@ void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
     trackers_[slot].start(snapshot);
   }
   points_ = walk_.points();
+  rate_ = 1.0;
+  alive_tick_ = now;
   seen_tick_ = now;
   end_tick_ = now;
   resting_ = false;
@@ -67,9 +82,7 @@ void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
 void PathMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
   const bool was_at_end = walk_.at_end();
-  walk_.advance((now - seen_tick_) * period_s_);
-  seen_tick_ = now;
-  points_ = walk_.points();
+  advance(snapshot);
   if (strays(snapshot)) {
     return;
   }
@@ -80,7 +93,30 @@ void PathMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
   }
 }
 
+/** The time of the path passes as fast as the axis allows that is farthest behind. */
+void PathMode::advance(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t now = snapshot.state.system.tick;
+  const double passed_s = (now - seen_tick_) * period_s_;
+  double lag = 0.0;
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    if (const double its = leg_moves(slot) ? trackers_[slot].lag(snapshot, points_[slot]) : 0.0; its > lag) {
+      lag = its;
+      slowest_ = slot;
+    }
+  }
+  const double allowed = std::clamp((longest_lag - lag) / (longest_lag - usual_lag), 0.0, 1.0);
+  rate_ += (allowed - rate_) * std::min(1.0, passed_s / slowing_s);
+  walk_.advance(passed_s * rate_, rate_);
+  points_ = walk_.points();
+  seen_tick_ = now;
+  alive_tick_ = rate_ > least_rate || walk_.at_end() ? now : alive_tick_;
+}
+
 bool PathMode::strays(const ilk_snapshot_t& snapshot) noexcept {
+  if (snapshot.state.system.tick - alive_tick_ > settle_ticks_) {
+    fail(TaskReason::off_path, 0, slowest_, snapshot.state.system.tick);
+    return true;
+  }
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (leg_moves(slot) && trackers_[slot].off_path(snapshot, points_[slot])) {
       fail(TaskReason::off_path, 0, slot, snapshot.state.system.tick);

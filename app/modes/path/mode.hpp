@@ -3,9 +3,10 @@
  * Path mode: several axes together along the legs of a program, for as long as the pedal is held.
  *
  * Coordinated moves, trajectories and draping all run here. Release of the pedal stops the axes; the next
- * press leads them, jerk-limited, back to where the leg was left, and then on. An axis that strays from its
- * path, an obstacle or a refusal ends the task for all axes, which then stop at once: their drive is given
- * back.
+ * press leads them, jerk-limited, back to where the leg was left, and then on. An axis that cannot keep up
+ * slows the time of the path down, for all axes, so that they stay on it. An axis that strays from its path
+ * all the same, one that holds it up for seconds, an obstacle or a refusal ends the task for all axes, which
+ * then stop at once: their drive is given back.
  */
 #pragma once
 
@@ -34,6 +35,7 @@ class PathMode final : public HeldMode {
   void drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
   void settle(const ilk_snapshot_t& snapshot) noexcept;
   void end_leg(const ilk_snapshot_t& snapshot) noexcept;
+  void advance(const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool strays(const ilk_snapshot_t& snapshot) noexcept;
   /** Whether the leg that runs moves the axis in `slot`. */
   [[nodiscard]] bool leg_moves(std::uint32_t slot) const noexcept {
@@ -47,9 +49,12 @@ class PathMode final : public HeldMode {
   TrajectoryFollower walk_;
   TrajectoryFollower::Points points_{};
   std::array<AxisTracker, ILK_SLOTS> trackers_{};
-  std::uint32_t seen_tick_ = 0; /**< of the snapshot before, while executing */
-  std::uint32_t end_tick_ = 0;  /**< since which the path is at its end and axes may lag behind */
-  std::uint32_t rest_tick_ = 0; /**< since which all axes rest there */
+  double rate_ = 1.0;            /**< at which the time of the path passes */
+  std::uint32_t slowest_ = 0;    /**< slot of the axis that is farthest behind */
+  std::uint32_t alive_tick_ = 0; /**< in which the time of the path last passed */
+  std::uint32_t seen_tick_ = 0;  /**< of the snapshot before, while executing */
+  std::uint32_t end_tick_ = 0;   /**< since which the path is at its end and axes may lag behind */
+  std::uint32_t rest_tick_ = 0;  /**< since which all axes rest there */
   bool resting_ = false;
 };
 

@@ -222,18 +222,85 @@ TEST_P(PathModeOnThePlant, AJammedAxisStopsAllOthersAtOnce) {
   }
 }
 
-TEST_P(PathModeOnThePlant, AnAxisTooSlowForItsPathStopsAllOthersAtOnce) {
-  ClosedLoop loop(13, GetParam());
-  loop.make_all_ready();
-  const PathProgram program = move_of(neuro_targets);
-  (void)loop.carry_out(1, test::along(program), 1000);
+/** From then on the motor of `head` goes at that share of the speed that its robot file states. */
+void weaken_head(ClosedLoop& loop, double share) {
   plant::command::ChangeParameters slow{head, {}};
   for (std::size_t knob = 0; knob < plant::kAxisKnobCount; ++knob) {
     if (plant::kAxisKnobs[knob].name == "full_speed_counts_per_s") {
-      slow.value[knob] = 0.2 * neuro().at_slot(head)->mechanics.full_speed_counts_per_s;
+      slow.value[knob] = share * neuro().at_slot(head)->mechanics.full_speed_counts_per_s;
     }
   }
   loop.happen(slow);
+}
+
+/** The most that any axis is away from its path, as a share of what its robot file allows. */
+class Straying {
+ public:
+  explicit Straying(const ClosedLoop& loop) : loop_(loop) {}
+
+  void look() {
+    for (const AxisCounts& target : neuro_targets) {
+      if (const auto setpoint = loop_.setpoint(target.slot)) {
+        const double error = setpoint->position_counts - loop_.state().axis[target.slot].position_counts;
+        const double allowed = neuro().at_slot(target.slot)->motion->following_error_counts;
+        most_ = std::max(most_, std::abs(error) / allowed);
+      }
+    }
+  }
+
+  [[nodiscard]] double most() const { return most_; }
+
+ private:
+  const ClosedLoop& loop_;
+  double most_ = 0.0;
+};
+
+TEST_P(PathModeOnThePlant, AnAxisTooSlowForItsPathSlowsAllDownAndAllStayOnIt) {
+  for (const double share : {0.5, 0.2}) {
+    ClosedLoop loop(13, GetParam());
+    loop.make_all_ready();
+    const PathProgram program = move_of(neuro_targets);
+    Straying straying(loop);
+    loop.watch([&] { straying.look(); });
+    (void)loop.carry_out(1, test::along(program), 1000);
+    weaken_head(loop, share);
+    for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
+      loop.tick();
+    }
+    expect_done(loop.path());
+    expect_at(loop, neuro(), neuro_targets);
+    EXPECT_LT(straying.most(), 1.0) << share;
+    EXPECT_GT(straying.most(), 0.3) << "nothing was too slow";
+    EXPECT_EQ(loop.refusals(), 0u);
+  }
+}
+
+TEST_P(PathModeOnThePlant, WhatIsStrongEnoughIsNotSlowedDown) {
+  std::array<std::uint32_t, 2> ticks{};
+  for (const bool weak : {false, true}) {
+    ClosedLoop loop(13, GetParam());
+    loop.make_all_ready();
+    weaken_head(loop, weak ? 0.9 : 1.0);
+    (void)loop.carry_out(1, test::along(move_of(neuro_targets)), 1);
+    while (is_open(loop.path().phase) && ticks[weak ? 1 : 0] < minute_ticks) {
+      loop.tick();
+      ++ticks[weak ? 1 : 0];
+    }
+    expect_done(loop.path());
+  }
+  EXPECT_NEAR(ticks[1], ticks[0], 0.03 * ticks[0]);
+}
+
+TEST_P(PathModeOnThePlant, AnAxisThatLeavesItsPathStopsAllOthersAtOnce) {
+  Robot robot = neuro();
+  for (Axis& axis : robot.axes) {
+    axis.motion->following_error_counts = 20;  // so near that its motor is not yet known to have stalled
+  }
+  ClosedLoop loop(13, GetParam(), robot);
+  loop.make_all_ready();
+  const PathProgram program = move_of(neuro_targets);
+  (void)loop.carry_out(1, test::along(program), 1000);
+  loop.happen(plant::command::JamAxis{head, true});
   for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
     loop.tick();
   }

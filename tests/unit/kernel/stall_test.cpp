@@ -170,7 +170,8 @@ TEST(P5_stall, an_axis_that_was_pushed_back_by_hand_is_judged_from_where_it_was_
     bench.enable_axis(axis);
     bench.press();
     bench.motor[axis].frozen = frozen;
-    EXPECT_EQ(driven_until_fault(bench, [](uint32_t) { return move(axis, 400, 1000); }, 60),
+    EXPECT_EQ(driven_until_fault(
+                  bench, [](uint32_t) { return move(axis, 400, 1000); }, 60),
               frozen ? effort_ticks : 60u);
     EXPECT_EQ(bench.fault(axis), frozen ? ILK_FAULT_STALL : ILK_FAULT_NONE);
   }

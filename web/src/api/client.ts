@@ -210,9 +210,10 @@ export const api = {
     read(() => slowHttp.GET("/api/proposals/{id}/plan", { params: { path: { id } } })),
   abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
   trajectory: () => read(() => http.GET("/api/trajectory")),
-  loadTrajectory: (text: string) =>
+  loadTrajectory: (text: string, timing: "as_written" | "slowed_to_fit") =>
     act(() =>
       slowHttp.PUT("/api/trajectory", {
+        params: { query: { timing } },
         body: text,
         bodySerializer: (body) => body,
         headers: { "Content-Type": "text/csv" },

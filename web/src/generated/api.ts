@@ -451,8 +451,9 @@ export interface paths {
         get: operations["getTrajectory"];
         /**
          * Loads a trajectory: a header and rows with commas, as `interlock trajectory check` reads them (docs/trajectories.md).
-         *     It is checked as a whole, velocities against the rates of the axes as well; when a row is wrong nothing is loaded, and the problem has
-         *     the code, line and column. It moves nothing: propose it by `{"kind":"trajectory"}`. It is unloaded when it was carried out.
+         *     It is checked as a whole, and what lies between its rows too: positions, and velocity, acceleration and jerk against the rates of the
+         *     axes. When something is wrong nothing is loaded, and the problem has the code, line and column, and says when and by how much. It moves
+         *     nothing: propose it by `{"kind":"trajectory"}`. It is unloaded when it was carried out.
          */
         put: operations["loadTrajectory"];
         post?: never;
@@ -2292,6 +2293,8 @@ export interface components {
         LoadedTrajectory: {
             rows: number;
             duration_s: number;
+            /** @description How many times as long it takes as it was written; 1 unless it was slowed down to fit. */
+            slowed_by: number;
             axes: {
                 slot: number;
                 name: string;
@@ -2300,8 +2303,10 @@ export interface components {
                 /** @description Between the rows as well. */
                 lowest: number;
                 highest: number;
-                /** @description In its unit per second. */
+                /** @description In its unit per second; between the rows as well. */
                 top_speed: number;
+                top_acceleration: number;
+                top_jerk: number;
             }[];
             author: string | null;
             /** Format: date-time */
@@ -3425,7 +3430,10 @@ export interface operations {
     };
     loadTrajectory: {
         parameters: {
-            query?: never;
+            query?: {
+                /** @description What becomes of rows that ask for more than the rates allow. They are refused, or all times are made longer, in the same proportion, until they fit. */
+                timing?: "as_written" | "slowed_to_fit";
+            };
             header?: never;
             path?: never;
             cookie?: never;

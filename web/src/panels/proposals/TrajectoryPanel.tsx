@@ -1,4 +1,4 @@
-import { useRef, useState } from "react";
+import { type ReactNode, useRef, useState } from "react";
 import { api, type LoadedTrajectory } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
@@ -9,7 +9,7 @@ import { useConsole } from "../../state/store";
 import { usePolled } from "../../state/usePolled";
 import { useReason } from "../../state/useReason";
 import { formatCounts, unitName } from "../../units/units";
-import { type WrongRow, wrongRow } from "./trajectory";
+import { isTooFast, type WrongRow, wrongRow } from "./trajectory";
 
 const ASK_EVERY_MS = 1000;
 
@@ -17,31 +17,39 @@ interface Wrong {
   readonly file: string;
   readonly notice: Notice;
   readonly row: WrongRow | null;
+  /** The file's text, when all that is wrong with it is that an axis would go too fast. */
+  readonly tooFast: string | null;
 }
 
 /** A motion that somebody wrote down: choose its file, see what is wrong in it, propose it. */
 export function TrajectoryPanel() {
   const { value, asked, notice, refresh } = usePolled(api.trajectory, ASK_EVERY_MS);
   const [wrong, setWrong] = useState<Wrong | null>(null);
-  const load = async (file: File): Promise<void> => {
-    const text = await file.text();
-    const outcome = await api.loadTrajectory(text);
+  const load = async (file: string, text: string, timing: "as_written" | "slowed_to_fit"): Promise<void> => {
+    const outcome = await api.loadTrajectory(text, timing);
     setWrong(
       outcome.ok
         ? null
-        : { file: file.name, notice: noticeOfProblem(outcome.problem), row: wrongRow(text, outcome.problem) },
+        : {
+            file,
+            notice: noticeOfProblem(outcome.problem),
+            row: wrongRow(text, outcome.problem),
+            tooFast: isTooFast(outcome.problem) ? text : null,
+          },
     );
     await refresh();
   };
   const unload = async (): Promise<void> => {
     const outcome = await api.unloadTrajectory();
-    setWrong(outcome.ok ? null : { file: "", notice: noticeOfProblem(outcome.problem), row: null });
+    setWrong(
+      outcome.ok ? null : { file: "", notice: noticeOfProblem(outcome.problem), row: null, tooFast: null },
+    );
     await refresh();
   };
   return (
     <Panel title="Trajectory file" className="trajectory-panel" asked={asked}>
       <div className="trajectory-tools">
-        <FileButton onFile={load} />
+        <FileButton onFile={async (file) => load(file.name, await file.text(), "as_written")} />
         <CommandButton
           need="holder"
           off={value === null || value.rows === 0 ? "No trajectory is loaded." : null}
@@ -55,7 +63,18 @@ export function TrajectoryPanel() {
           </CommandButton>
         )}
       </div>
-      {wrong !== null && <WrongFile wrong={wrong} />}
+      {wrong !== null && (
+        <WrongFile wrong={wrong}>
+          {wrong.tooFast !== null && (
+            <CommandButton
+              need="holder"
+              onCommand={() => load(wrong.file, wrong.tooFast ?? "", "slowed_to_fit")}
+            >
+              Slow it down to fit
+            </CommandButton>
+          )}
+        </WrongFile>
+      )}
       {notice !== null && (
         <p className="panel-notice" role="alert">
           <NoticeText lead="No answer:" notice={notice} />
@@ -89,7 +108,7 @@ function FileButton({ onFile }: { readonly onFile: (file: File) => Promise<void>
         aria-label="Trajectory file"
         onChange={({ target }) => {
           const file = target.files?.[0];
-          // The same file, mended, may be chosen again.
+          // The same file, corrected, may be chosen again.
           target.value = "";
           if (file !== undefined) void onFile(file);
         }}
@@ -98,7 +117,13 @@ function FileButton({ onFile }: { readonly onFile: (file: File) => Promise<void>
   );
 }
 
-function WrongFile({ wrong: { file, notice, row } }: { readonly wrong: Wrong }) {
+function WrongFile({
+  wrong: { file, notice, row },
+  children,
+}: {
+  readonly wrong: Wrong;
+  readonly children: ReactNode;
+}) {
   return (
     <div className="panel-notice" role="alert">
       <NoticeText lead={file === "" ? "Refused:" : `${file} was not loaded:`} notice={notice} />
@@ -132,6 +157,7 @@ function WrongFile({ wrong: { file, notice, row } }: { readonly wrong: Wrong }) 
           </table>
         </div>
       )}
+      {children}
     </div>
   );
 }
@@ -142,7 +168,9 @@ function Loaded({ trajectory }: { readonly trajectory: LoadedTrajectory }) {
   return (
     <div className="trajectory-loaded">
       <p>
-        {trajectory.rows} rows, {trajectory.duration_s.toFixed(1)} s, loaded by {trajectory.author}
+        {trajectory.rows} rows, {trajectory.duration_s.toFixed(1)} s
+        {trajectory.slowed_by > 1 && `, slowed down to ${trajectory.slowed_by.toFixed(2)} times as long`},
+        loaded by {trajectory.author}
       </p>
       <ul>
         {trajectory.axes.map(({ slot, name, lowest, highest, top_speed }) => {

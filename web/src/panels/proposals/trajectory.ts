@@ -15,6 +15,11 @@ export interface WrongRow {
   readonly whole: boolean;
 }
 
+/** An axis would go beyond its rates; slowed down it would not. */
+export function isTooFast({ code }: Problem): boolean {
+  return code === "TOO_FAST" || code === "TOO_MUCH_ACCELERATION" || code === "TOO_MUCH_JERK";
+}
+
 const MOST_CELLS = 24;
 const MOST_CELL_LETTERS = 40;
 
