@@ -28,13 +28,13 @@ Nothing == [driven |-> 0, effort |-> 0, way |-> "NONE", far |-> 0, near |-> 0]
 
 Beyond(mark) == Along(seen.way, Read1.raw - mark)
 
+Enables == Accepted({"ENABLE"}) /\ ~IsEnabled(axis)
 Whole   == Read1.valid /\ Beyond(seen.far) >= k.stall_min_counts
 Some    == Read1.valid /\ Beyond(seen.near) > k.noise_counts
 Arrived == /\ Read1.valid /\ io'.axis.state = "MOVING" /\ io'.system.mode = "MOTION" /\ ~Driven /\ ~Enables
            /\ Magnitude(io'.axis.setpoint_counts - io'.axis.position_counts) <= k.deadband_counts
            /\ Along(seen.way, Read1.raw - (IF Whole THEN Read1.raw ELSE seen.far)) > k.noise_counts
 Excused == Accepted({"CLEAR_FAULT"}) /\ axis.fault = "STALL"
-Enables == Accepted({"ENABLE"}) /\ ~IsEnabled(axis)
 Renewed == Read1.valid /\ (Read1.reset \/ ~axis.card_seen)
 
 Witnessed ==

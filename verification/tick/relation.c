@@ -264,6 +264,13 @@ static void claim_rest(void) {
 static bool has_run;
 static bool had_run;
 
+/** Within a tick the judge knows of requests that an axis is disabled, or its fault cleared. */
+static void relate_state(bool shown, uint32_t slot) {
+  const uint32_t judged = ghost.slot[slot].state;
+  RELATED((state.axis[slot].state == ILK_AXIS_DISABLED) == (judged == ILK_AXIS_DISABLED));
+  RELATED((state.axis[slot].state == ILK_AXIS_FAULTED) == (judged == ILK_AXIS_FAULTED));
+}
+
 /** What an axis is compared with when it moves, and what came of it. */
 static void relate_marks(bool shown, bool middle) {
   const bool told = state.system.mode == ILK_MODE_MOTION && (!middle || mode_is_told());
@@ -295,8 +302,7 @@ static void relate_marks(bool shown, bool middle) {
       const bool faulted = was_well && a->state == ILK_AXIS_FAULTED;
       const uint32_t first = g->jump ? ILK_FAULT_JUMP : (g->reversed ? ILK_FAULT_REVERSE : ILK_FAULT_DRIFT);
       const bool other = g->reset || (!g->jump && g->maybe_reversed && a->fault == ILK_FAULT_REVERSE);
-      RELATED((a->state == ILK_AXIS_DISABLED) == (g->state == ILK_AXIS_DISABLED));
-      RELATED((a->state == ILK_AXIS_FAULTED) == (g->state == ILK_AXIS_FAULTED));
+      relate_state(shown, slot);
       RELATED(HOLDS_IF(g->valid, !awaits_valid_frame));
       RELATED(HOLDS_IF(was_well && judged && (g->jump || g->reversed || g->drifted),
                        faulted && a->fault_tick == state.system.tick && (a->fault == first || other)));
@@ -365,6 +371,7 @@ static void relate_stall(bool shown, bool middle) {
     RELATED(g->stall_ticks == a->stall_driven_ticks);
     RELATED(g->effort == (((uint64_t)a->effort_high << 32) | a->effort_low));
     if (middle) {
+      relate_state(shown, slot);
       RELATED(HOLDS_IF(was_well && a->state == ILK_AXIS_FAULTED, a->fault_tick == state.system.tick));
       RELATED(HOLDS_IF(!was_well && a->state == ILK_AXIS_FAULTED, a->fault == before.axis[slot].fault));
       RELATED(HOLDS_IF(g->stalled && was_well,
