@@ -196,13 +196,12 @@ void add_tune(CLI::App& cli, TuneOptions& options) {
                       "Speed of the profile in counts/s; default: five sixths of full speed");
   command->add_option("--full-speed", options.step.full_speed_counts_per_s,
                       "Speed at full drive that the controller believes in; default: that of the plant");
-  PivGains& gains = options.step.gains;
-  command->add_option("--position-gain", gains.position_per_s, "Velocity for a count of position error, 1/s")
-      ->capture_default_str();
-  command->add_option("--velocity-gain", gains.velocity, "Output for a velocity error, no unit")
-      ->capture_default_str();
-  command->add_option("--integral-gain", gains.integral_per_s, "Growth of the output, 1/s")
-      ->capture_default_str();
+  AskedGains& gains = options.step.gains;
+  command->add_option(
+      "--position-gain", gains.position_per_s,
+      "Velocity for a count of position error, 1/s; default, as of the others: the robot file's");
+  command->add_option("--velocity-gain", gains.velocity, "Output for a velocity error, no unit");
+  command->add_option("--integral-gain", gains.integral_per_s, "Growth of the output, 1/s");
   command->add_option("--late", options.step.late_ticks, "Ticks by which each move reaches the kernel late")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();

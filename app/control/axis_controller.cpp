@@ -7,7 +7,6 @@
 namespace interlock {
 namespace {
 
-constexpr std::uint32_t floor_fraction = 16;
 constexpr double full_speed_rise_s = 0.05;
 constexpr double integral_share = 0.5;
 /** After a longer gap the integral does not make up for the ticks that were missed. */
@@ -19,8 +18,8 @@ DriveMapRules drive_rules(const Axis& axis, double full_speed_counts_per_s) {
       .card = axis.card,
       .motor_direction = axis.motor_direction != 0,
       .max_drive = axis.drive.max,
-      .min_drive = axis.drive.min != 0 ? axis.drive.min : axis.drive.max / floor_fraction,
-      .dead_zone_drive = 0.0,
+      .min_drive = floor_drive(axis.drive),
+      .dead_zone_drive = static_cast<double>(axis.drive.dead_zone),
       .full_speed_counts_per_s = full_speed_counts_per_s,
       .counts_per_revolution = axis.unit == Unit::rad ? 2 * std::numbers::pi * axis.counts_per_unit : 0.0};
 }
@@ -35,8 +34,7 @@ std::optional<double> mapped_full_speed(const Axis& axis) {
   return map ? std::optional(map->full_speed()) : std::nullopt;
 }
 
-AxisControlRules control_rules(const Axis& axis, std::uint32_t period_us, double full_speed_counts_per_s,
-                               const PivGains& gains) {
+AxisControlRules control_rules(const Axis& axis, std::uint32_t period_us, double full_speed_counts_per_s) {
   const double full = mapped_full_speed(axis).value_or(full_speed_counts_per_s);
   const Mechanics& mechanics = axis.mechanics;
   const std::uint32_t at_rest = mechanics.backlash_counts + mechanics.noise_counts;
@@ -45,7 +43,7 @@ AxisControlRules control_rules(const Axis& axis, std::uint32_t period_us, double
           .deadband_counts = axis.deadband_counts,
           .velocity = {.fastest_counts_per_s = mechanics.max_delta_counts * us_per_s / period_us,
                        .noise_counts = static_cast<double>(mechanics.noise_counts)},
-          .piv = {.gains = gains,
+          .piv = {.gains = axis.gains,
                   .full_speed_counts_per_s = full,
                   .lead_s = coast / full,
                   .rate_counts_per_s2 = full / full_speed_rise_s,

@@ -38,14 +38,11 @@ struct AxisControlRules {
  *   high-frequency axis in rad takes it from the published map instead.
  * - Lead: the coasting distance, which contains the latency of the loop, less backlash and noise, at full
  *   speed.
- * - Smallest drive: the file's, or a sixteenth of the largest where the file leaves that open.
+ * - Smallest drive: the file's; where that leaves it open, a 32nd of the way from the dead zone to the
+ *   largest.
  * - Rate: full speed in 50 ms. Integral: at most half of full speed.
- *
- * The gains of the robot file are not used: they are the published ones, in drive words of a listing whose
- * velocity error has no sign.
  */
-AxisControlRules control_rules(const Axis& axis, std::uint32_t period_us, double full_speed_counts_per_s,
-                               const PivGains& gains = {});
+AxisControlRules control_rules(const Axis& axis, std::uint32_t period_us, double full_speed_counts_per_s);
 
 /** Speed at the largest drive as the robot file and the published map give it; nothing for other cards. */
 std::optional<double> mapped_full_speed(const Axis& axis);

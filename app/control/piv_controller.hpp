@@ -33,21 +33,13 @@
 #include "control/control_error.hpp"
 #include "control/setpoint.hpp"
 #include "control/velocity_estimator.hpp"
+#include "robot/robot.hpp"
 
 namespace interlock {
 
-/** Gains that do not depend on an axis' counts, speed or card. */
-struct PivGains {
-  double position_per_s = 15.0;
-  double velocity = 0.3;
-  double integral_per_s = 4.0;
-
-  bool operator==(const PivGains&) const = default;
-};
-
 /** What the law of one axis is made from. */
 struct PivRules {
-  PivGains gains;
+  Gains gains;
   double full_speed_counts_per_s = 0.0; /**< largest output */
   double lead_s = 0.0;                  /**< from a reading until the motor has answered to it */
   double rate_counts_per_s2 = 0.0;      /**< fastest change of the output */

@@ -45,7 +45,13 @@ bool AxisMove::held_back(const ilk_snapshot_t& snapshot) noexcept {
 }
 
 void AxisMove::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
-  lease_.hold(task, snapshot.state.system.tick, target_counts_, desired_drive(snapshot.state.axis[slot_]),
+  const ilk_axis_t& axis = snapshot.state.axis[slot_];
+  // The kernel takes no setpoint beyond this range: the target it may refuse, what leads to it has to be
+  // within.
+  const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.system.mode);
+  const std::int32_t beyond = rest_aim_.setpoint(target_counts_, axis.position_counts);
+  const bool is_taken = beyond >= range.lowest_counts && beyond <= range.highest_counts;
+  lease_.hold(task, snapshot.state.system.tick, is_taken ? beyond : target_counts_, desired_drive(axis),
               requests);
 }
 
@@ -56,7 +62,7 @@ std::uint32_t AxisMove::desired_drive(const ilk_axis_t& axis) const noexcept {
 DriveLaw AxisMove::law_of(const AxisPlan& plan, const ilk_axis_t& axis, std::uint32_t max_drive) noexcept {
   const std::uint32_t bound = drive_bound(plan.rules, axis);
   const std::uint32_t ceiling = max_drive == 0 ? bound : std::min(bound, max_drive);
-  return drive_law(plan.rules, plan.min_drive, ceiling);
+  return drive_law(plan.rules, plan.drive, ceiling);
 }
 
 }  // namespace interlock

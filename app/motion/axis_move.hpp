@@ -12,6 +12,7 @@
 #include "motion/axis_plan.hpp"
 #include "motion/drive_law.hpp"
 #include "motion/kernel_request.hpp"
+#include "motion/rest_aim.hpp"
 #include "motion/rest_watch.hpp"
 #include "motion/setpoint_lease.hpp"
 
@@ -31,7 +32,7 @@ class AxisMove {
 
   AxisMove() = default;
   AxisMove(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks) noexcept
-      : slot_(slot), plan_(plan), lease_(slot, plan, lease_ticks) {}
+      : slot_(slot), plan_(plan), lease_(slot, plan, lease_ticks), rest_aim_(plan) {}
 
   /** Sets a new target. `max_drive` 0: the axis' own bound. */
   void aim(std::int32_t target_counts, std::uint32_t max_drive) noexcept;
@@ -63,6 +64,7 @@ class AxisMove {
   std::int32_t target_counts_ = 0;
   std::uint32_t max_drive_ = 0;
   std::uint32_t unblocked_tick_ = 0; /**< newest tick in which no limit held the axis back */
+  RestAim rest_aim_;
   RestWatch rest_;
 };
 

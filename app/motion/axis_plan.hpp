@@ -22,7 +22,7 @@ namespace interlock {
 /** The kernel's rules for an axis and what a controller needs to know besides. */
 struct AxisPlan {
   ilk_axis_config_t rules{};
-  std::uint32_t min_drive = 0; /**< smallest drive that a controller asks for */
+  DriveBounds drive;
   double counts_per_unit = 1.0;
   MotionRates rates;        /**< all zero: the axis moves alone only */
   AxisControlRules control; /**< along a path; without rates they make no controller */
@@ -110,7 +110,7 @@ struct RobotPlan {
     for (const Axis& each : robot.axes) {
       const MotionRates rates = each.motion.value_or(MotionRates{});
       axis[each.slot] =
-          AxisPlan{config.axis[each.slot], each.drive.min, each.counts_per_unit, rates,
+          AxisPlan{config.axis[each.slot], each.drive, each.counts_per_unit, rates,
                    control_rules(each, config.common.period_us, each.mechanics.full_speed_counts_per_s)};
     }
   }

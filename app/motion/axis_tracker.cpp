@@ -22,7 +22,7 @@ std::int32_t aim(const PathPoint& point) noexcept {
 }  // namespace
 
 AxisTracker::AxisTracker(std::uint32_t slot, const AxisPlan& plan, std::uint32_t lease_ticks)
-    : slot_(slot), plan_(plan), lease_(slot, plan, lease_ticks) {
+    : slot_(slot), plan_(plan), lease_(slot, plan, lease_ticks), rest_aim_(plan) {
   if (auto controller = AxisController::create(plan.control)) {
     controller_ = *controller;
   }
@@ -70,7 +70,8 @@ void AxisTracker::hold(std::uint32_t task, const ilk_snapshot_t& snapshot, const
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
   // An axis that has just homed stands nearer to its limit than any setpoint may be.
   const SetpointRange range = setpoint_range(plan_.rules, axis, snapshot.state.system.mode);
-  const std::int32_t target = std::clamp(aim(point), range.lowest_counts, range.highest_counts);
+  const std::int32_t target = std::clamp(rest_aim_.setpoint(aim(point), axis.position_counts),
+                                         range.lowest_counts, range.highest_counts);
   std::uint32_t drive = 0;
   if (controller_) {
     drive = controller_->update(axis, snapshot.state.system.tick, point.now, target).drive;

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "control/axis_controller.hpp"
+#include "motion/rest_aim.hpp"
 #include "motion/rest_watch.hpp"
 #include "motion/setpoint_lease.hpp"
 #include "motion/trajectory_follower.hpp"
@@ -57,6 +58,7 @@ class AxisTracker {
   AxisPlan plan_;
   SetpointLease lease_;
   std::optional<AxisController> controller_; /**< none: no path moves the axis, as it has no rates */
+  RestAim rest_aim_;
   RestWatch rest_;
 };
 

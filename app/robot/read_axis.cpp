@@ -52,11 +52,11 @@ DriveBounds read_drive(TableReader table, bool has_amplitude) {
 }
 
 Gains read_gains(TableReader table) {
-  constexpr double largest = 1e6;
+  constexpr double largest = 1e4;
   Gains gains;
-  gains.kp = table.number_between("kp", 0.0, largest);
-  gains.ki = table.number_between("ki", 0.0, largest);
-  gains.kd = table.number_between("kd", 0.0, largest);
+  gains.position_per_s = table.number_between("position_per_s", 0.0, largest);
+  gains.velocity = table.number_between("velocity", 0.0, largest);
+  gains.integral_per_s = table.number_between("integral_per_s", 0.0, largest);
   table.refuse_unknown_keys();
   return gains;
 }

@@ -52,11 +52,19 @@ struct DriveBounds {
   bool operator==(const DriveBounds&) const = default;
 };
 
-/** Gains of the position controller, drive per count of error. */
+/** Smallest drive that a controller asks for: what the file says, or a 32nd of the way from the dead
+ * zone to the largest. */
+constexpr std::uint32_t floor_drive(const DriveBounds& drive) noexcept {
+  constexpr std::uint32_t fraction = 32;
+  return drive.min != 0 ? drive.min : drive.dead_zone + (drive.max - drive.dead_zone) / fraction;
+}
+
+/** Gains of the controller along a path (control/piv_controller.hpp), whatever the axis' counts, speed and
+ * card. */
 struct Gains {
-  double kp = 0.0;
-  double ki = 0.0;
-  double kd = 0.0;
+  double position_per_s = 0.0; /**< velocity for a count of position error */
+  double velocity = 0.0;       /**< output for a velocity error */
+  double integral_per_s = 0.0; /**< growth of the output for a velocity error */
 
   bool operator==(const Gains&) const = default;
 };

@@ -32,6 +32,12 @@ std::string reachable(const Axis& axis) {
          std::to_string(axis.highest_setpoint_counts());
 }
 
+Gains tried(const Gains& file, const AskedGains& asked) {
+  return {.position_per_s = asked.position_per_s.value_or(file.position_per_s),
+          .velocity = asked.velocity.value_or(file.velocity),
+          .integral_per_s = asked.integral_per_s.value_or(file.integral_per_s)};
+}
+
 RigResult<Plan> plan(const Axis& axis, std::uint32_t period_us, const StepOptions& options, double full_speed,
                      std::int32_t from_counts) {
   const std::int64_t target =
@@ -52,7 +58,9 @@ RigResult<Plan> plan(const Axis& axis, std::uint32_t period_us, const StepOption
     return tl::unexpected("the move would take " + number_text(profile->duration_s()) +
                           " s; expected at most " + number_text(longest_profile_s));
   }
-  const auto controller = AxisController::create(control_rules(axis, period_us, full_speed, options.gains));
+  AxisControlRules rules_of_axis = control_rules(axis, period_us, full_speed);
+  rules_of_axis.piv.gains = tried(axis.gains, options.gains);
+  const auto controller = AxisController::create(rules_of_axis);
   if (!controller) {
     return tl::unexpected(controller.error().message());
   }

@@ -17,6 +17,13 @@ namespace interlock {
 // A step of one axis: a move along the velocity profile of the thesis, made by the axis' controller on the
 // simulated plant under the real kernel core, recorded tick by tick.
 
+/** Gains to try instead of those of the robot file. */
+struct AskedGains {
+  std::optional<double> position_per_s = {};
+  std::optional<double> velocity = {};
+  std::optional<double> integral_per_s = {};
+};
+
 /** What step is run. */
 struct StepOptions {
   std::string axis; /**< its name in the robot file */
@@ -25,7 +32,7 @@ struct StepOptions {
   std::optional<double> cruise_counts_per_s = {}; /**< of the profile; default: five sixths of full speed */
   std::optional<double> full_speed_counts_per_s = {}; /**< that the controller believes in; default: the
                                                     published map's, or that of the plant */
-  PivGains gains = {};
+  AskedGains gains = {};
   std::uint32_t late_ticks = 0; /**< by which each MOVE comes later than over a link that is never late */
   std::uint64_t seed = 1;       /**< of the plant's noise */
 };

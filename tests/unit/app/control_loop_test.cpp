@@ -99,7 +99,7 @@ TEST_F(ControlLoopTest, CarriesOutAnOrderAndFollowsItsVerdict) {
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick();
   ASSERT_NE(sent(ILK_REQUEST_MOVE), nullptr);
-  EXPECT_EQ(sent(ILK_REQUEST_MOVE)->target_counts, 1500);
+  EXPECT_EQ(sent(ILK_REQUEST_MOVE)->target_counts, 1501) << "so that it rests at 1500";
   EXPECT_EQ(move().phase, TaskPhase::executing);
   kernel_.push_verdict(*sent(ILK_REQUEST_MOVE), ILK_VERDICT_RANGE, 5);
   tick();

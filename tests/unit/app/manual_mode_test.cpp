@@ -59,7 +59,7 @@ TEST_F(ManualModeTest, MovesTowardsTheTargetWhileThePedalIsHeld) {
   ASSERT_EQ(requests.size(), 1u);
   EXPECT_EQ(requests[0].origin.task, 1u);
   EXPECT_EQ(requests[0].origin.slot, insertion);
-  EXPECT_EQ(requests[0].target_counts, 1500);
+  EXPECT_EQ(requests[0].target_counts, 1501) << "so that it rests at 1500";
   EXPECT_EQ(requests[0].drive, neuro_config().axis[insertion].max_drive);
   EXPECT_EQ(status().phase, TaskPhase::executing);
 }

@@ -101,7 +101,7 @@ TEST(Compile, what_people_read_does_not_change_the_configuration) {
   const ilk_config_t config = compile(renamed).value();
   renamed.title = "Another";
   renamed.axes.front().title = "Another";
-  renamed.axes.front().gains.kp = 1.0;
+  renamed.axes.front().gains.velocity = 1.0;
   EXPECT_EQ(compile(renamed).value().crc, config.crc);
 }
 

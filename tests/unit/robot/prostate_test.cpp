@@ -51,7 +51,7 @@ TEST(Prostate, rotation_is_driven_between_the_published_velocities) {
   const Axis& rotation = *prostate().find("rotation");
   EXPECT_EQ(rotation.card, ILK_CARD_HIGH_FREQUENCY);
   EXPECT_EQ(rotation.drive, (DriveBounds{141386, 3222, 0, 14138, 240}));
-  EXPECT_EQ(rotation.gains, (Gains{2.0, 0.9, 0.15}));
+  EXPECT_EQ(rotation.gains, (Gains{15.0, 0.3, 4.0}));
 }
 
 TEST(Prostate, sliders_keep_their_published_ranges_and_park_at_150_mm) {

@@ -57,7 +57,7 @@ TEST(RobotFile, neuro_reads_as_written) {
   EXPECT_EQ(pitch.unhomed_travel_counts, 70u);
   EXPECT_EQ(pitch.soft_limits, (SoftLimits{-370, 516}));
   EXPECT_EQ(pitch.drive, (DriveBounds{0x1ffff, 0, 1967, 13107, 0}));
-  EXPECT_EQ(pitch.gains, (Gains{100.0, 0.0, 0.0}));
+  EXPECT_EQ(pitch.gains, (Gains{15.0, 0.3, 4.0}));
   EXPECT_EQ(pitch.mechanics, (Mechanics{12, 1, 1, 8, 50, 1000}));
   EXPECT_EQ(pitch.stall, (StallRule{500, 68, 2}));
   EXPECT_EQ(pitch.runaway, (RunawayRule{20, 20}));
@@ -147,8 +147,8 @@ INSTANTIATE_TEST_SUITE_P(
                "period_ms", "unknown", "period_us"},
         Broken{"unknown_key_of_an_axis", "title = \"Pitch\"", "title = \"Pitch\"\ndead_band = 2", "dead_band",
                "axis.pitch.dead_band", "unknown", "deadband_counts"},
-        Broken{"unknown_key_of_a_table", "kp = 100.0,", "kp = 100.0, kx = 1.0,", "kx = 1.0",
-               "axis.yaw.gains.kx", "unknown", "kd, ki, kp"},
+        Broken{"unknown_key_of_a_table", "velocity = 0.3,", "velocity = 0.3, kx = 1.0,", "kx = 1.0",
+               "axis.yaw.gains.kx", "unknown", "integral_per_s, position_per_s, velocity"},
         Broken{"pedal_is_no_table", "[pedal]\nchannels = 2\ndebounce_ms = 10\ndisagree_ms = 50", "pedal = 2",
                "pedal = 2", "pedal", "2 is given", "a table"},
         Broken{"missing_table", "stall = { driven_ms = 500, effort_ms = 68, min_counts = 2 }\n", "",
@@ -201,8 +201,8 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"counts_per_unit_of_almost_nothing", "counts_per_unit = 795.8", "counts_per_unit = 1e-9",
                "counts_per_unit = 1e-9", "axis.yaw.counts_per_unit", "1e-09 is given: the soft limits",
                "at least 0.001222"},
-        Broken{"negative_gain", "ki = 0.0", "ki = -1.0", "ki = -1.0", "axis.yaw.gains.ki", "-1 is given",
-               "from 0 to"},
+        Broken{"negative_gain", "integral_per_s = 4.0", "integral_per_s = -1.0", "integral_per_s = -1.0",
+               "axis.yaw.gains.integral_per_s", "-1 is given", "from 0 to"},
         Broken{"least_drive_above_largest", "min = 0xFFF,", "min = 0xF000,", "min = 0xF000",
                "axis.yaw.drive.min", "is given", "from 0 to 61439"},
         Broken{"polarity_as_boolean", "motor_direction = 0", "motor_direction = false",

@@ -98,7 +98,7 @@ TEST(StepResponse, ALinkThatIsLateStillBringsTheAxisToItsTarget) {
 }
 
 TEST(StepResponse, RotationReachesItsSpeedByThePublishedMapAlone) {
-  const PivGains none{.position_per_s = 0.0, .velocity = 0.0, .integral_per_s = 0.0};
+  const AskedGains none{.position_per_s = 0.0, .velocity = 0.0, .integral_per_s = 0.0};
   for (const std::int32_t move : {4000, -4000}) {
     const auto step = run(
         prostate(), {.axis = "rotation", .move_counts = move, .cruise_counts_per_s = 2000.0, .gains = none});

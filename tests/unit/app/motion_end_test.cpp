@@ -1,0 +1,146 @@
+// Where motions end, and what motors do to them that start only well above nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "closed_loop.hpp"
+#include "motion/rest_aim.hpp"
+
+namespace interlock {
+namespace {
+
+using test::ClosedLoop;
+using test::config_of;
+using test::minute_ticks;
+using test::neuro;
+using test::prostate;
+
+/** The robot on a bench: no axis is linked to another, none has a switch, each stands in the middle of its
+ * range. */
+Robot on_a_bench(Robot robot) {
+  robot.home_steps.clear();
+  robot.kinematics.reset();
+  for (Axis& axis : robot.axes) {
+    const std::int32_t half = (axis.soft_limits.max_counts - axis.soft_limits.min_counts) / 2;
+    axis.soft_limits = {-half, half};
+    axis.home_offset_counts = 0;
+    axis.limit = ILK_LIMIT_NONE;
+    axis.homing.reset();
+  }
+  return robot;
+}
+
+/** With motors that stand still up to that share of the largest drive, as its file then says. What a motor
+ * does that is driven by frequency is in the published map. */
+Robot with_dead_zone(Robot robot, double share) {
+  for (Axis& axis : robot.axes) {
+    if (axis.card == ILK_CARD_HIGH_FREQUENCY) {
+      continue;
+    }
+    axis.drive.dead_zone = static_cast<std::uint32_t>(std::lround(share * axis.drive.max));
+    axis.drive.min = 0;
+    axis.drive.unhomed_max = axis.drive.max / 10;
+  }
+  return robot;
+}
+
+/** Motors that are as the robot's file says. */
+plant::Parameters plant_of(const Robot& robot) {
+  plant::Parameters plant = plant::default_parameters(config_of(robot));
+  for (const Axis& axis : robot.axes) {
+    plant::AxisParameters& motor = plant.axis[axis.slot];
+    motor.dead_zone_fraction = static_cast<double>(axis.drive.dead_zone) / axis.drive.max;
+    motor.full_speed_counts_per_s = axis.mechanics.full_speed_counts_per_s;
+    motor.backlash_counts = axis.mechanics.backlash_counts;
+  }
+  return plant;
+}
+
+/** In the middle of its deadband: half of it beside the target at most, either way. */
+void expect_in_the_middle(const ClosedLoop& loop, const Axis& axis, std::int32_t target) {
+  const std::int32_t error = loop.state().axis[axis.slot].position_counts - target;
+  EXPECT_LE(2 * std::abs(error), static_cast<std::int32_t>(axis.deadband_counts))
+      << axis.name << " rests " << error << " counts beside " << target;
+}
+
+/** To and fro, each axis by itself and all together. */
+void go_to_and_fro(ClosedLoop& loop, const Robot& robot) {
+  std::uint32_t task = 1;
+  for (const std::int32_t percent : {-20, 20, -28, -10, 15, -5, 0}) {
+    MoveLeg leg;
+    for (const Axis& axis : robot.axes) {
+      const std::int32_t range = axis.highest_setpoint_counts() - axis.lowest_setpoint_counts();
+      leg.targets.push_back({axis.slot, range * percent / 100});
+      const std::int32_t middle = (loop.state().axis[axis.slot].position_counts + range * percent / 100) / 2;
+      const TaskStatus moved = loop.carry_out(++task, MoveTask{axis.slot, middle}, minute_ticks);
+      ASSERT_EQ(moved.phase, TaskPhase::done) << axis.name;
+      expect_in_the_middle(loop, axis, middle);
+    }
+    const PathProgram program{{leg}};
+    ASSERT_EQ(loop.carry_out(++task, test::along(program), minute_ticks).phase, TaskPhase::done);
+    for (const AxisCounts& target : leg.targets) {
+      expect_in_the_middle(loop, *robot.at_slot(target.slot), target.counts);
+    }
+  }
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
+TEST(MotionEnd, AnAxisComesToRestInTheMiddleOfItsDeadbandWhateverTheDeadZoneOfItsMotor) {
+  for (const double share : {0.015, 0.03, 0.06, 0.09}) {
+    for (const Robot& shipped : {neuro(), prostate()}) {
+      SCOPED_TRACE(shipped.name + ", dead zone " + std::to_string(share));
+      const Robot robot = with_dead_zone(on_a_bench(shipped), share);
+      ClosedLoop loop(5, 1, robot, plant_of(robot));
+      loop.make_all_ready();
+      ASSERT_NO_FATAL_FAILURE(go_to_and_fro(loop, robot));
+    }
+  }
+}
+
+TEST(MotionEnd, TheEndsOfTheRangeAreReachedToo) {
+  const Robot robot = on_a_bench(neuro());
+  ClosedLoop loop(5, 1, robot, plant_of(robot));
+  loop.make_all_ready();
+  std::uint32_t task = 1;
+  for (const Axis& axis : robot.axes) {
+    for (const std::int32_t end : {axis.lowest_setpoint_counts(), axis.highest_setpoint_counts()}) {
+      const TaskStatus moved = loop.carry_out(++task, MoveTask{axis.slot, end}, minute_ticks);
+      EXPECT_EQ(moved.phase, TaskPhase::done) << axis.name;
+    }
+  }
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
+AxisPlan plan_with(std::uint32_t deadband_counts, double slowest_counts_per_s, double lead_s) {
+  AxisPlan plan;
+  plan.rules.deadband_counts = deadband_counts;
+  plan.control.drive = {.card = ILK_CARD_PWM,
+                        .max_drive = 1000,
+                        .min_drive = 100,
+                        .full_speed_counts_per_s = slowest_counts_per_s * 10};
+  plan.control.piv.lead_s = lead_s;
+  return plan;
+}
+
+TEST(RestAim, LiesBeyondTheTargetByTheDeadbandLessTheCoast) {
+  RestAim aim(plan_with(20, 600.0, 0.01));
+  EXPECT_EQ(aim.setpoint(1000, 0), 1014);
+  EXPECT_EQ(aim.setpoint(1000, 990), 1014) << "from where it came";
+  EXPECT_EQ(aim.setpoint(1000, 1010), 1014);
+  EXPECT_EQ(aim.setpoint(1000, 1021), 986) << "it went past, and comes back";
+  EXPECT_EQ(aim.setpoint(-1000, 1000), -1014);
+}
+
+TEST(RestAim, IsNeverShortOfTheTargetAndNowhereElseThanWhereAnAxisIsThatHasNotToMove) {
+  RestAim far(plan_with(2, 5000.0, 0.01));
+  EXPECT_EQ(far.setpoint(100, 0), 100) << "it coasts farther than the deadband";
+  RestAim near(plan_with(2, 10.0, 0.01));
+  EXPECT_EQ(near.setpoint(100, 101), 100);
+  EXPECT_EQ(RestAim().setpoint(7, 0), 7);
+  EXPECT_EQ(near.setpoint(INT32_MAX, 0), INT32_MAX);
+}
+
+}  // namespace
+}  // namespace interlock
