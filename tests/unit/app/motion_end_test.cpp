@@ -99,6 +99,53 @@ TEST(MotionEnd, AnAxisComesToRestInTheMiddleOfItsDeadbandWhateverTheDeadZoneOfIt
   }
 }
 
+/** A fifth of the readings is a count off. */
+TEST(MotionEnd, AnEncoderThatDithersChangesNothing) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Robot robot = on_a_bench(neuro());
+    plant::Parameters plant = plant_of(robot);
+    for (plant::AxisParameters& axis : plant.axis) {
+      axis.noise_counts = 1;
+      axis.noise_chance = 0.2;
+    }
+    ClosedLoop loop(seed, 1, robot, plant);
+    loop.make_all_ready();
+    std::uint32_t task = 1;
+    for (const std::int32_t percent : {-20, 20, -5}) {
+      MoveLeg leg;
+      for (const Axis& axis : robot.axes) {
+        const std::int32_t range = axis.highest_setpoint_counts() - axis.lowest_setpoint_counts();
+        leg.targets.push_back({axis.slot, range * percent / 100});
+      }
+      const PathProgram program{{leg}};
+      ASSERT_EQ(loop.carry_out(++task, test::along(program), minute_ticks).phase, TaskPhase::done) << seed;
+      for (const AxisCounts& target : leg.targets) {
+        const auto error = loop.state().axis[target.slot].position_counts - target.counts;
+        EXPECT_LE(std::abs(error), 1) << robot.at_slot(target.slot)->name;
+      }
+    }
+    EXPECT_EQ(loop.refusals(), 0u);
+  }
+}
+
+TEST(MotionEnd, HomingWithAnEncoderThatDithersChangesNothing) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    for (const Axis& axis : neuro().axes) {
+      plant::Parameters plant = plant::default_parameters(config_of(neuro()));
+      for (plant::AxisParameters& each : plant.axis) {
+        each.noise_counts = 1;
+        each.noise_chance = 0.2;
+      }
+      ClosedLoop loop(seed, 1, neuro(), plant);
+      ASSERT_NO_THROW(loop.make_ready(axis.slot)) << axis.name << " seed " << seed;
+      const double offset = loop.true_position(axis.slot) - loop.state().axis[axis.slot].position_counts;
+      if (axis.limit != ILK_LIMIT_NONE) {
+        EXPECT_LE(std::abs(offset), 2.0) << axis.name;
+      }
+    }
+  }
+}
+
 TEST(MotionEnd, TheEndsOfTheRangeAreReachedToo) {
   const Robot robot = on_a_bench(neuro());
   ClosedLoop loop(5, 1, robot, plant_of(robot));
