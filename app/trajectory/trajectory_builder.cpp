@@ -72,7 +72,7 @@ TrajectoryResult<TrajectoryBuilder> TrajectoryBuilder::create(std::vector<std::s
 TrajectoryResult<void> TrajectoryBuilder::add(std::span<const double> row) {
   Checked checked = check_numbers(row).and_then([&] { return check_time(row.front()); });
   for (auto rules = rules_.begin(); checked && rules != rules_.end(); ++rules) {
-    checked = check_position(*rules, row[rules->position_place]);
+    checked = check_state(*rules, row);
   }
   if (!checked) {
     return checked;
@@ -127,10 +127,17 @@ TrajectoryResult<void> TrajectoryBuilder::check_time(double time_s) const {
   return {};
 }
 
-TrajectoryResult<void> TrajectoryBuilder::check_position(const AxisRules& rules, double position) const {
+TrajectoryResult<void> TrajectoryBuilder::check_state(const AxisRules& rules,
+                                                      std::span<const double> row) const {
+  const double position = row[rules.position_place];
   if (!accepts(rules.axis, position)) {
     return refused(Code::out_of_range, trajectory_.rows(), rules.position_place,
                    number_text(position) + " is out of range", allowed_text(rules.axis));
+  }
+  if (rules.velocity_place && std::abs(row[*rules.velocity_place]) > largest_rate) {
+    return refused(Code::out_of_range, trajectory_.rows(), *rules.velocity_place,
+                   number_text(row[*rules.velocity_place]) + " is out of range",
+                   number_text(-largest_rate) + " to " + number_text(largest_rate));
   }
   return {};
 }

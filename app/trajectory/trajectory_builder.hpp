@@ -4,9 +4,10 @@
  * robot can follow.
  *
  * Checked of each row: number of fields; finite numbers; times from 0 on that rise by `shortest_step_s` at
- * least; positions within what the kernel accepts of a homed axis (its soft limits less coast). Checked of
- * all that lies between the rows, exactly, by its polynomials: the same of positions; velocity, acceleration
- * and jerk within the rates of the axis.
+ * least; positions within what the kernel accepts of a homed axis (its soft limits less coast); velocities
+ * within `largest_rate`, so that all that follows from them is finite. Checked of all that lies between the
+ * rows, exactly, by its polynomials: the same of positions; velocity, acceleration and jerk within the rates
+ * of the axis.
  */
 #pragma once
 
@@ -83,7 +84,7 @@ class TrajectoryBuilder {
   [[nodiscard]] static std::size_t line_of(std::size_t row) noexcept { return row + 2; }
   [[nodiscard]] Checked check_numbers(std::span<const double> row) const;
   [[nodiscard]] Checked check_time(double time_s) const;
-  [[nodiscard]] Checked check_position(const AxisRules& rules, double position) const;
+  [[nodiscard]] Checked check_state(const AxisRules& rules, std::span<const double> row) const;
   void smooth(std::size_t axis);
   void look_between_rows();
   void look_at_way(std::size_t axis, std::size_t row);

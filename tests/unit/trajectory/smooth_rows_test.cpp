@@ -204,7 +204,8 @@ TEST(BetweenRows, ARefusalNamesAxisTimeValueAndLimit) {
   EXPECT_THAT(refused.error().code, testing::AnyOf(Code::too_much_acceleration, Code::too_much_jerk));
   EXPECT_THAT(refused.error().message(),
               testing::MatchesRegex(
-                  "line [0-9]+, yaw \\[rad\\]: [0-9.]+ rad/s\\^[23] at [0-9.]+ s(, on the way from the row before,)? is too much (acceleration|jerk); expected [0-9.]+ rad/s\\^[23] at most, "
+                  "line [0-9]+, yaw \\[rad\\]: [0-9.]+ rad/s\\^[23] at [0-9.]+ s(, on the way from the row "
+                  "before,)? is too much (acceleration|jerk); expected [0-9.]+ rad/s\\^[23] at most, "
                   "either way; slowed down to fit, it would take 1.[0-9]+ times as long"));
   const TimedTrajectory slowed = read_trajectory(text.str(), neuro(), Timing::slowed_to_fit).value();
   EXPECT_NEAR(slowed.slowed_by(), std::sqrt(9475.0 / 6000.0), 0.1);
@@ -215,6 +216,25 @@ TEST(BetweenRows, AVelocityThatIsTooFastInTheFirstRowIsOfThatRow) {
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, Code::too_fast);
   EXPECT_EQ(refused.error().line, 2u);
+}
+
+TEST(BetweenRows, NoVelocityIsSoLargeThatNothingIsKnownOfTheWay) {
+  for (const char* velocity : {"1e308", "-1e307", "1e150", "1000001"}) {
+    for (const Timing timing : {Timing::as_written, Timing::slowed_to_fit}) {
+      const std::string text =
+          std::string("time [s],yaw [rad],yaw [rad/s]\n0,-0.5,0\n1,-0.6,") + velocity + "\n2,-0.5,0\n";
+      const auto refused = read_trajectory(text, neuro(), timing);
+      ASSERT_FALSE(refused) << velocity;
+      EXPECT_EQ(refused.error().code, Code::out_of_range);
+      EXPECT_EQ(refused.error().line, 3u);
+      EXPECT_EQ(refused.error().column, "yaw [rad/s]");
+    }
+  }
+  const auto fast =
+      read_trajectory("time [s],yaw [rad],yaw [rad/s]\n0,-0.5,0\n1,-0.6,1e6\n2,-0.5,0\n", neuro());
+  ASSERT_FALSE(fast);
+  EXPECT_THAT(fast.error().code,
+              testing::AnyOf(Code::too_fast, Code::too_much_acceleration, Code::too_much_jerk));
 }
 
 TEST(BetweenRows, WhatWouldTakeMoreThanADayWhenSlowedDownIsRefused) {
