@@ -18,7 +18,8 @@ RestAim::RestAim(const AxisPlan& plan) noexcept : deadband_counts_(plan.rules.de
 
 std::int32_t RestAim::setpoint(std::int32_t target_counts, std::int32_t position_counts) noexcept {
   const std::int64_t left = std::int64_t{target_counts} - position_counts;
-  if (left > deadband_counts_ || left < -deadband_counts_) {
+  const bool is_near = left <= deadband_counts_ && left >= -deadband_counts_;
+  if (left != 0 && (!is_near || way_ == 0)) {
     way_ = left > 0 ? 1 : -1;
   }
   return saturated(target_counts + way_ * beyond_counts_);

@@ -23,7 +23,7 @@ std::string allowed_text(const Axis& axis) {
   const auto [lowest, highest] = std::minmax(
       {axis.to_unit(axis.lowest_setpoint_counts()), axis.to_unit(axis.highest_setpoint_counts())});
   return number_text(lowest) + " to " + number_text(highest) + ' ' + std::string(unit_name(axis.unit)) +
-         ", its soft limits less coast";
+         ", what the kernel accepts of it";
 }
 
 }  // namespace
@@ -119,7 +119,7 @@ TrajectoryResult<void> TrajectoryBuilder::check_time(double time_s) const {
     return refused(Code::out_of_range, row, 0, number_text(time_s) + " is out of range",
                    "0 to " + number_text(latest_time_s));
   }
-  if (row > 0 && time_s < trajectory_.end_s() + shortest_step_s) {
+  if (row > 0 && time_s - trajectory_.end_s() < shortest_step_s * time_slack) {
     return refused(Code::unsorted_times, row, 0,
                    number_text(time_s) + " does not follow " + number_text(trajectory_.end_s()),
                    "times that rise by a microsecond at least");

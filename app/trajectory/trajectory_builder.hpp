@@ -33,6 +33,9 @@ inline constexpr double latest_time_s = 1e5;
 /** Times closer than this count as repeated. */
 inline constexpr double shortest_step_s = 1e-6;
 
+/** Rounding by which a step may fall short of the shortest, as a share of it. */
+inline constexpr double time_slack = 0.999;
+
 /** Rounding by which a rate may pass its limit, as a share of it. */
 inline constexpr double rate_slack = 1e-9;
 

@@ -33,7 +33,9 @@ BAD_TRAJECTORIES = {
     "no number": Bad(rows_of(50, {20: "0.18,nan,5"}), "NOT_FINITE", 20, "yaw [rad]"),
     "a word": Bad(rows_of(50, {20: "0.18,-0.2,deep"}), "NOT_A_NUMBER", 20, "insertion [mm]"),
     "beyond a limit": Bad(rows_of(2000, {977: "9.75,-0.2,5000"}), "OUT_OF_RANGE", 977, "insertion [mm]"),
-    "a reversal in an instant": Bad(rows_of(50, {20: "0.18,-0.3,5"}), "TOO_MUCH_ACCELERATION", 20, "yaw [rad]"),
+    "a reversal in an instant": Bad(
+        rows_of(50, {20: "0.18,-0.3,5"}), "TOO_MUCH_ACCELERATION", 20, "yaw [rad]"
+    ),
     "a million rows": Bad(A_MILLION_ROWS, "TOO_LARGE", 100_002, None),
     "empty": Bad("", "EMPTY", 1, "time [s]"),
     "a header alone": Bad(rows_of(0), "EMPTY", 2, "time [s]"),

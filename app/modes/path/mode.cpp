@@ -11,11 +11,12 @@ constexpr double settle_s = 5.0;
 
 /** Shares of the following error: up to the first an axis is behind its path as axes are, at the second the
  * path waits for it. */
-constexpr double usual_lag = 0.4;
-constexpr double longest_lag = 0.8;
-/** Within which the time of the path follows the axis that is farthest behind: several times the lag of a
- * motor, so that a count more or less does not shake the others. */
-constexpr double slowing_s = 0.05;
+constexpr double usual_lag = 0.25;
+constexpr double longest_lag = 0.75;
+/** Within which the time of the path follows the axis that is farthest behind: fast enough for a motor that
+ * gives up at full speed, and back so slowly that a count more or less does not shake the others. */
+constexpr double slowing_s = 0.015;
+constexpr double recovering_s = 0.1;
 /** Below it the time of the path stands. */
 constexpr double least_rate = 0.02;
 
@@ -105,7 +106,7 @@ void PathMode::advance(const ilk_snapshot_t& snapshot) noexcept {
     }
   }
   const double allowed = std::clamp((longest_lag - lag) / (longest_lag - usual_lag), 0.0, 1.0);
-  rate_ += (allowed - rate_) * std::min(1.0, passed_s / slowing_s);
+  rate_ += (allowed - rate_) * std::min(1.0, passed_s / (allowed < rate_ ? slowing_s : recovering_s));
   walk_.advance(passed_s * rate_, rate_);
   points_ = walk_.points();
   seen_tick_ = now;

@@ -184,7 +184,9 @@ TEST(RestAim, IsNeverShortOfTheTargetAndNowhereElseThanWhereAnAxisIsThatHasNotTo
   RestAim far(plan_with(2, 5000.0, 0.01));
   EXPECT_EQ(far.setpoint(100, 0), 100) << "it coasts farther than the deadband";
   RestAim near(plan_with(2, 10.0, 0.01));
-  EXPECT_EQ(near.setpoint(100, 101), 100);
+  EXPECT_EQ(near.setpoint(100, 100), 100);
+  EXPECT_EQ(near.setpoint(100, 99), 102) << "a path may be so slow that its target is never far";
+  EXPECT_EQ(near.setpoint(100, 101), 102) << "noise turns it nowhere";
   EXPECT_EQ(RestAim().setpoint(7, 0), 7);
   EXPECT_EQ(near.setpoint(INT32_MAX, 0), INT32_MAX);
 }

@@ -101,6 +101,7 @@ TEST(TrajectoryCsv, NamesLineAndColumnOfABadRow) {
       {good + "1,-0.5,10\n", Code::unsorted_times, 4, "time [s]"},
       {good + "0.5,-0.5,10\n", Code::unsorted_times, 4, "time [s]"},
       {good + "1.0000001,-0.5,10\n", Code::unsorted_times, 4, "time [s]"},
+      {good + "1.0000009,-0.5,10\n", Code::unsorted_times, 4, "time [s]"},
       {good + "1e6,-0.5,10\n", Code::out_of_range, 4, "time [s]"},
       {"time [s],yaw [rad]\n-1,0\n", Code::out_of_range, 2, "time [s]"},
       {good + "2,0.5,10\n", Code::out_of_range, 4, "yaw [rad]"},
@@ -108,14 +109,21 @@ TEST(TrajectoryCsv, NamesLineAndColumnOfABadRow) {
   });
 }
 
+TEST(TrajectoryCsv, TimesAMicrosecondApartAreNoneThatIsRepeated) {
+  std::string text = "time [s],yaw [rad]\n";
+  for (int n = 0; n < 30; ++n) {
+    text += "0.0000" + std::to_string(10 + n) + ",-0.5\n";
+  }
+  EXPECT_EQ(trajectory_of(text).rows(), 30u);
+}
+
 TEST(TrajectoryCsv, SaysWhatWasExpected) {
   EXPECT_EQ(error_of("time [s],yaw [deg]\n").message(),
             "line 1, yaw [deg]: not a unit of this axis; expected [rad] for its position or [rad/s] for its "
             "velocity");
-  EXPECT_EQ(
-      error_of("time [s],insertion [mm]\n0,10\n1,-4\n").message(),
-      "line 3, insertion [mm]: -4 is out of range; expected 0.254022015241 to 34.6740050804 mm, its soft "
-      "limits less coast");
+  EXPECT_EQ(error_of("time [s],insertion [mm]\n0,10\n1,-4\n").message(),
+            "line 3, insertion [mm]: -4 is out of range; expected 0.254022015241 to 34.6740050804 mm, what "
+            "the kernel accepts of it");
 }
 
 TEST(TrajectoryCsv, PositionsEndWhereTheKernelsSetpointsEnd) {
