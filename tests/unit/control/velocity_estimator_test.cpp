@@ -54,17 +54,30 @@ TEST(VelocityEstimator, OfTheThesisSpeedIsWithinThreePercentWhereTwoReadingsAreN
   EXPECT_GT(worst_difference, 0.9 * 833.0);
 }
 
-TEST(VelocityEstimator, HasTheStandardDeviationThatItsHeaderStates) {
-  std::mt19937_64 generator(3);
-  std::uniform_real_distribution speed(-4000.0, 4000.0);
+/** Of many passes at an even speed, each from anywhere between two counts. */
+double deviation_at(double counts_per_s) {
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> start(0.0, 1.0);
+  constexpr int passes = 2000;
   double sum = 0.0;
-  constexpr int trials = 4000;
-  for (int trial = 0; trial < trials; ++trial) {
-    const double truth = speed(generator);
-    const double error = moving_estimator(truth, 20).estimate().value().counts_per_s - truth;
-    sum += error * error;
+  for (int pass = 0; pass < passes; ++pass) {
+    VelocityEstimator estimator(velocity_rules);
+    const double from = start(random);
+    for (std::uint32_t n = 0; n <= 20; ++n) {
+      const double position = from + counts_per_s * n * 1e-3;
+      estimator.add(static_cast<std::int32_t>(std::floor(position)), n * 1000);
+    }
+    sum += std::pow(estimator.estimate()->counts_per_s - counts_per_s, 2);
   }
-  EXPECT_NEAR(std::sqrt(sum / trials), 12.0, 1.0);
+  return std::sqrt(sum / passes);
+}
+
+TEST(VelocityEstimator, HasTheDeviationsThatItsHeaderStates) {
+  for (double speed = 5.0; speed < 1000.0; speed *= 1.1) {
+    const double stated = speed < 100.0 ? 29.0 : (speed < 200.0 ? 10.0 : 5.0);
+    EXPECT_LE(deviation_at(speed), stated) << speed;
+  }
+  EXPECT_NEAR(deviation_at(30.0), 28.6, 0.5);
 }
 
 TEST(VelocityEstimator, SaysNothingUntilHalfAWindowIsCovered) {
