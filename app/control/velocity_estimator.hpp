@@ -5,7 +5,7 @@
  * The filter is the slope of the straight line that fits the readings of a window best (least squares), by
  * default those of the last 20 ms. It belongs to the mean time of these readings: at a steady rate it is half
  * a window late, and the estimate says how late. A reading is the whole count below the position. At 100
- * counts/s and above that leaves a deviation of 10 counts/s at most in 21 readings a millisecond apart;
+ * counts/s and above that leaves a deviation of 15 counts/s at most in 21 readings a millisecond apart;
  * below, where the window holds a count or two, up to 29 (at 30 counts/s), as much as the speed itself.
  *
  * Time is the card's (spec/frames.md, word 10): microseconds modulo 2^32, taken with the reading, so that a

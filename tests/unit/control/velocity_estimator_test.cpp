@@ -74,7 +74,7 @@ double deviation_at(double counts_per_s) {
 
 TEST(VelocityEstimator, HasTheDeviationsThatItsHeaderStates) {
   for (double speed = 5.0; speed < 1000.0; speed *= 1.1) {
-    const double stated = speed < 100.0 ? 29.0 : 10.0;
+    const double stated = speed < 100.0 ? 29.0 : 15.0;
     EXPECT_LE(deviation_at(speed), stated) << speed;
   }
   EXPECT_NEAR(deviation_at(30.0), 28.6, 0.5);
