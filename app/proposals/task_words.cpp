@@ -69,9 +69,8 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
       return "Another motion took over the axes.";
     case TaskReason::off_path:
       return axis +
-             " strayed too far from its path, or held it up for 5 s, so every axis was stopped. Look for "
-             "what "
-             "holds it back.";
+             " strayed too far from its path, or held it up for 5 s, so every axis was stopped. "
+             "Look for what holds it back.";
     case TaskReason::goal_late:
       return axis + " did not come to rest at its goal within 5 s. Look for what holds it back.";
     case TaskReason::moved_away:

@@ -228,6 +228,9 @@ TrajectoryResult<void> TrajectoryBuilder::judge() {
 }
 
 TrajectoryResult<void> TrajectoryBuilder::slow_down() {
+  if (!too_fast_) {
+    return {};  // every time stays as it was written, to the last bit
+  }
   const double begin_s = trajectory_.begin_s();
   const double end_s = begin_s + trajectory_.duration_s() * slowness_;
   if (end_s > latest_time_s) {

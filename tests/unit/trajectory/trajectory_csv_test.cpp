@@ -117,6 +117,16 @@ TEST(TrajectoryCsv, TimesAMicrosecondApartAreNoneThatIsRepeated) {
   EXPECT_EQ(trajectory_of(text).rows(), 30u);
 }
 
+TEST(TrajectoryCsv, ATrajectoryThatFitsKeepsItsTimesToTheLastBit) {
+  const std::string rows = "0.1,-0.5\n0.3,-0.5\n0.7,-0.5\n1.1,-0.5\n";
+  for (const Timing timing : {Timing::as_written, Timing::slowed_to_fit}) {
+    const TimedTrajectory trajectory = trajectory_of("time [s],yaw [rad]\n" + rows, timing);
+    EXPECT_EQ(trajectory.begin_s(), 0.1);
+    EXPECT_EQ(trajectory.end_s(), 1.1);
+    EXPECT_EQ(trajectory.slowed_by(), 1.0);
+  }
+}
+
 TEST(TrajectoryCsv, SaysWhatWasExpected) {
   EXPECT_EQ(error_of("time [s],yaw [deg]\n").message(),
             "line 1, yaw [deg]: not a unit of this axis; expected [rad] for its position or [rad/s] for its "
