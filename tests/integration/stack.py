@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import httpx
-from bare_kernel import BIN, DEADLINE_S, PlantControl
+from bare_kernel import BIN, DEADLINE_S, PlantControl, without_priority
 
 PROGRAMS = {
     "simulator": "interlock-sim",
@@ -65,7 +65,7 @@ class Output:
 def start_interlock(runtime: Path, *arguments: str | Path) -> subprocess.Popen:
     """`interlock` with its runtime directory; errors come with its output."""
     return subprocess.Popen(
-        [str(part) for part in (BIN / "interlock", *arguments)],
+        without_priority([BIN / "interlock", *arguments]),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
