@@ -204,25 +204,45 @@ struct TrajectoryOptions {
 Result<void> check_trajectory(const TrajectoryOptions& options, const Installation& installation,
                               std::ostream& output);
 
-/**
- * `interlock tune`: a step of one axis on the simulated hardware, as figures, table and plot. docs/tuning.md
- * describes command and figures.
- */
-struct TuneOptions {
-  std::string robot; /**< name of a robot, or its file */
-  StepOptions step;
+/** An axis of a robot on its simulated hardware. */
+struct SimulatedAxis {
+  std::string robot;           /**< name of a robot, or its file */
   std::filesystem::path plant; /**< parameters of the simulated hardware; empty: those of the robot */
-  std::filesystem::path csv;   /**< where the table goes; empty: nowhere */
   std::filesystem::path svg;   /**< where the plot goes; empty: nowhere */
+  std::filesystem::path write; /**< where the robot's file with what was found goes; empty: nowhere */
 };
 
 /**
- * Writes table and plot, then answers with one line of JSON.
+ * `interlock tune`: a step of one axis, as figures, table and plot. docs/tuning.md describes command and
+ * figures.
+ */
+struct TuneOptions : SimulatedAxis {
+  StepOptions step;
+  std::filesystem::path csv; /**< where the table goes; empty: nowhere */
+};
+
+/**
+ * Writes table and plot and, with the best gains that a search finds, the robot's file; then answers with one
+ * line of JSON, about a step with those gains.
  *
  * @return REFUSED for an axis, a move or gains that the robot cannot follow, and when a fault ended the motion;
  * PRECONDITION when a file cannot be read or written.
  */
 Result<void> tune(const TuneOptions& options, const Installation& installation, std::ostream& output);
+
+/** `interlock identify`: what the mechanics of one axis do, measured. docs/tuning.md describes it. */
+struct IdentifyOptions : SimulatedAxis {
+  std::string axis;
+  std::uint64_t seed = 1; /**< of the plant's noise */
+};
+
+/**
+ * Writes the plot and the robot's file with what was measured, then answers with one line of JSON.
+ *
+ * @return REFUSED for an axis that cannot be measured, when a fault ended the motion, and for measured numbers
+ * with which the kernel would refuse the robot; PRECONDITION when a file cannot be read or written.
+ */
+Result<void> identify(const IdentifyOptions& options, const Installation& installation, std::ostream& output);
 
 /** `interlock user add|passwd|list`. They work while the app runs, on the same store. */
 struct UserOptions {

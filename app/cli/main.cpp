@@ -58,6 +58,7 @@ struct CommandLine {
   KinematicsOptions kinematics;
   TrajectoryOptions trajectory;
   TuneOptions tune;
+  IdentifyOptions identify;
   IgtlOptions igtl;
   std::filesystem::path model;
   bool model_json = false;
@@ -184,11 +185,29 @@ void add_trajectory(CLI::App& cli, TrajectoryOptions& options) {
       ->required();
 }
 
+void add_simulated(CLI::App& command, SimulatedAxis& options, std::string& axis, std::uint64_t& seed,
+                   const std::string& plotted, const std::string& written) {
+  command.add_option("--robot", options.robot, "Name of a robot, or its file")->required();
+  command.add_option("--axis", axis, "Name of the axis")->required();
+  command.add_option("--seed", seed, "Seed of the plant's noise")->capture_default_str();
+  command.add_option("--plant", options.plant, "Parameters of the simulated hardware")
+      ->check(CLI::ExistingFile);
+  command.add_option("--svg", options.svg, "File for the plot of " + plotted);
+  command.add_option("--write", options.write, "File for the robot's file with " + written);
+}
+
+void add_identify(CLI::App& cli, IdentifyOptions& options) {
+  CLI::App* const command = cli.add_subcommand(
+      "identify",
+      "Measure dead zone, speed, lag, coast, play and noise of an axis on the simulated hardware");
+  add_simulated(*command, options, options.axis, options.seed, "speed over drive", "what was measured");
+}
+
 void add_tune(CLI::App& cli, TuneOptions& options) {
   CLI::App* const command =
       cli.add_subcommand("tune", "Run a step of an axis on the simulated hardware and say how good it was");
-  command->add_option("--robot", options.robot, "Name of a robot, or its file")->required();
-  command->add_option("--axis", options.step.axis, "Name of the axis")->required();
+  add_simulated(*command, options, options.step.axis, options.step.seed,
+                "position, velocity and control output", "the best gains that a search finds");
   command->add_option("--move", options.step.move_counts,
                       "Counts from where it stands; default: what full speed makes in 0.6 s, or half of its "
                       "way, away from the switch");
@@ -205,11 +224,7 @@ void add_tune(CLI::App& cli, TuneOptions& options) {
   command->add_option("--late", options.step.late_ticks, "Ticks by which each move reaches the kernel late")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  command->add_option("--seed", options.step.seed, "Seed of the plant's noise")->capture_default_str();
-  command->add_option("--plant", options.plant, "Parameters of the simulated hardware")
-      ->check(CLI::ExistingFile);
   command->add_option("--csv", options.csv, "File for the table, a row a tick");
-  command->add_option("--svg", options.svg, "File for the plot of position, velocity and control output");
 }
 
 void add_model(CLI::App& cli, CommandLine& line) {
@@ -260,6 +275,9 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("trajectory")) {
     return check_trajectory(line.trajectory, Installation::current(), std::cout);
   }
+  if (cli.got_subcommand("identify")) {
+    return identify(line.identify, Installation::current(), std::cout);
+  }
   if (cli.got_subcommand("tune")) {
     return tune(line.tune, Installation::current(), std::cout);
   }
@@ -294,6 +312,7 @@ int main(int argc, char** argv) {
   add_kinematics(cli, line.kinematics);
   add_trajectory(cli, line.trajectory);
   add_tune(cli, line.tune);
+  add_identify(cli, line.identify);
   add_igtl(cli, line.igtl);
   add_model(cli, line);
   line.store.describe(cli);

@@ -186,7 +186,7 @@ constexpr std::array<Entry, 42> kConfigError{
     Entry{19, "COAST", "`coast_counts` is zero, shorter than full speed in the latency of the loop, or min + coast is not below max - coast.", "", "", "", Names{}},
     Entry{20, "DEADBAND", "`deadband_counts` is zero or at least half of the range.", "", "", "", Names{}},
     Entry{21, "MAX_DRIVE", "`max_drive` is zero or more than the card's word can carry.", "", "", "", Names{}},
-    Entry{22, "UNHOMED_DRIVE", "`unhomed_max_drive` is not above `dead_zone_drive`, or more than a tenth of `max_drive`.", "", "", "", Names{}},
+    Entry{22, "UNHOMED_DRIVE", "`unhomed_max_drive` is not above `dead_zone_drive`, or more than a tenth of the way from there to `max_drive`; or `dead_zone_drive` is more than a fifth of `max_drive`.", "", "", "", Names{}},
     Entry{23, "AMPLITUDE", "`max_amplitude` is not from 1 to 255 on a HIGH_FREQUENCY card, or not zero on another; `home_amplitude` exceeds it, or is not zero on an axis without a switch.", "", "", "", Names{}},
     Entry{24, "UNHOMED_TRAVEL", "`unhomed_travel_counts` is not above `coast_counts`, or more than a tenth of the range.", "", "", "", Names{}},
     Entry{25, "HOME_DRIVE", "`home_drive` is not above `dead_zone_drive`, or more than `unhomed_max_drive`; not zero on an axis without a switch.", "", "", "", Names{}},

@@ -30,6 +30,8 @@ bool has_much_backlash(const Axis& axis) {
   return axis.mechanics.backlash_counts > range / 10;
 }
 
+bool has_wide_dead_zone(const Axis& axis) { return axis.drive.dead_zone > axis.drive.max / 5; }
+
 /** Rules that a robot can break; all others are kept by how it is read and compiled. */
 constexpr std::array rules{
     Rule{ILK_CONFIG_ERROR_PERIOD, "period_us", "125 to 2000 us"},
@@ -60,8 +62,10 @@ constexpr std::array rules{
     Rule{ILK_CONFIG_ERROR_MAX_DRIVE, "drive.max",
          "1 to the largest drive of the card: 2147483647 (pwm, analog-input), 1073741823 (non-pwm), 397785 "
          "(high-frequency)"},
+    Rule{ILK_CONFIG_ERROR_UNHOMED_DRIVE, "drive.dead_zone", "at most a fifth of drive.max",
+         has_wide_dead_zone},
     Rule{ILK_CONFIG_ERROR_UNHOMED_DRIVE, "drive.unhomed_max",
-         "more than drive.dead_zone, at most a tenth of drive.max"},
+         "more than drive.dead_zone, at most a tenth of the way from there to drive.max"},
     Rule{ILK_CONFIG_ERROR_AMPLITUDE, "drive.max_amplitude", "1 to 255, and not less than homing.amplitude"},
     Rule{ILK_CONFIG_ERROR_UNHOMED_TRAVEL, "unhomed_travel_counts",
          "more than mechanics.coast_counts, at most a tenth of the range"},

@@ -1,6 +1,7 @@
 #include "tuning/step_rig.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "plant/exchange.hpp"
 #include "robot/catalog.hpp"
@@ -20,28 +21,30 @@ std::string at(const char* what, catalog::Family family, std::uint32_t code) {
 
 StepRig::StepRig(const ilk_config_t& config, const plant::Parameters& parameters, std::uint64_t seed,
                  std::uint32_t slot)
-    : config_(config), slot_(slot), plant_(config, parameters, seed) {
+    : config_(config),
+      slot_(slot),
+      settle_ticks_(time_to_settle_ms * 1000 / config.common.period_us +
+                    std::max(config.common.power_up_ticks, config.axis[slot].rest_ticks)),
+      plant_(config, parameters, seed) {
   requests_.reserve(ILK_REQUESTS_PER_TICK);
 }
 
-RigResult<void> StepRig::make_ready() {
-  if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
-    return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
-  }
-  const std::uint32_t settle_ticks = time_to_settle_ms * 1000 / config_.common.period_us +
-                                     std::max(config_.common.power_up_ticks, config_.axis[slot_].rest_ticks);
-  const bool has_switch = config_.axis[slot_].limit_side != ILK_LIMIT_NONE;
+/** Enabled, with the pedal held; its home is where it stands, if it says so. */
+RigResult<void> StepRig::begin_motion(bool sets_home) {
   const auto step = [&](ilk_request_kind_t kind) {
     ask(kind);
-    return run(settle_ticks);
+    return run(settle_ticks_);
   };
-  const RigResult<void> moving =
-      run(settle_ticks)
-          .and_then([&] { return step(ILK_REQUEST_RESET); })
-          .and_then([&] { return step(ILK_REQUEST_ENABLE); })
-          .and_then([&] { return has_switch ? RigResult<void>() : step(ILK_REQUEST_SET_HOME); })
-          .and_then([&] { return press_pedal(); })
-          .and_then([&] { return run(settle_ticks); });
+  return step(ILK_REQUEST_RESET)
+      .and_then([&] { return step(ILK_REQUEST_ENABLE); })
+      .and_then([&] { return sets_home ? step(ILK_REQUEST_SET_HOME) : RigResult<void>(); })
+      .and_then([&] { return plant_.schedule(plant::command::PressPedal{true}).map([](std::uint64_t) {}); })
+      .and_then([&] { return run(settle_ticks_); });
+}
+
+RigResult<void> StepRig::make_ready(const std::function<void(const ilk_axis_t&)>& watch) {
+  const bool has_switch = config_.axis[slot_].limit_side != ILK_LIMIT_NONE;
+  const RigResult<void> moving = start().and_then([&] { return begin_motion(!has_switch); });
   if (!moving || !has_switch) {
     return moving;
   }
@@ -50,8 +53,28 @@ RigResult<void> StepRig::make_ready() {
     if (const RigResult<void> ticked = tick(); !ticked) {
       return ticked;
     }
+    watch(axis());
   }
-  return run(settle_ticks);
+  return run(settle_ticks_);
+}
+
+RigResult<void> StepRig::make_ready_by_hand() {
+  const ilk_axis_config_t& axis = config_.axis[slot_];
+  const double open = plant::position_from_switch(axis, axis.home_clear_counts);
+  const double home = axis.limit_side == ILK_LIMIT_UPPER ? std::min(0.0, open) : std::max(0.0, open);
+  const auto way = static_cast<std::int32_t>(std::lround(home - true_position_counts()));
+  return start()
+      .and_then(
+          [&] { return plant_.schedule(plant::command::PushAxis{slot_, way}).map([](std::uint64_t) {}); })
+      .and_then([&] { return run(2 * settle_ticks_); })
+      .and_then([&] { return begin_motion(true); });
+}
+
+RigResult<void> StepRig::start() {
+  if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
+    return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
+  }
+  return run(settle_ticks_);
 }
 
 /** A MOVE without drive is refused: the lease of the one before ends by one of a single tick. */
@@ -109,10 +132,6 @@ void StepRig::ask(ilk_request_kind_t kind) {
   request.axis = slot_;
   request.consent = state_.system.consent;
   put(request);
-}
-
-RigResult<void> StepRig::press_pedal() {
-  return plant_.schedule(plant::command::PressPedal{true}).map([](std::uint64_t) {});
 }
 
 RigResult<void> StepRig::run(std::uint32_t ticks) {

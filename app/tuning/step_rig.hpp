@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <tl/expected.hpp>
 #include <vector>
@@ -30,8 +31,13 @@ class StepRig {
   StepRig(const ilk_config_t& config, const plant::Parameters& parameters, std::uint64_t seed,
           std::uint32_t slot);
 
-  /** Unlocks, enables and homes the axis, at its switch or where it stands, and holds the pedal. */
-  RigResult<void> make_ready();
+  /** Unlocks, enables and homes the axis, at its switch or where it stands, and holds the pedal. `watch` sees
+   * each tick of homing at the switch. */
+  RigResult<void> make_ready(const std::function<void(const ilk_axis_t&)>& watch = [](const ilk_axis_t&) {});
+
+  /** The same for an axis that does not find its switch: somebody moves it by hand to its position 0, or to
+   * where the switch is open next to it, and says that its home is there. */
+  RigResult<void> make_ready_by_hand();
 
   /** Asks for a move in the next tick. */
   void move(std::int32_t target_counts, std::uint32_t drive);
@@ -54,13 +60,15 @@ class StepRig {
  private:
   void put(ilk_request_t request);
   void ask(ilk_request_kind_t kind);
-  RigResult<void> press_pedal();
+  RigResult<void> start();
+  RigResult<void> begin_motion(bool sets_home);
   RigResult<void> run(std::uint32_t ticks);
   [[nodiscard]] RigResult<void> judge() const;
   [[nodiscard]] const plant::Axis& plant_axis() const { return *plant_.station(slot_)->axis; }
 
   ilk_config_t config_;
   std::uint32_t slot_;
+  std::uint32_t settle_ticks_;
   plant::Plant plant_;
   ilk_state_t state_{};
   ilk_outputs_t outputs_{};

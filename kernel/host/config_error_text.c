@@ -25,7 +25,7 @@ ilk_config_error_text_t ilk_config_error_text(uint32_t error) {
     [ILK_CONFIG_ERROR_COAST] = {"COAST", "`coast_counts` is zero, shorter than full speed in the latency of the loop, or min + coast is not below max - coast."},
     [ILK_CONFIG_ERROR_DEADBAND] = {"DEADBAND", "`deadband_counts` is zero or at least half of the range."},
     [ILK_CONFIG_ERROR_MAX_DRIVE] = {"MAX_DRIVE", "`max_drive` is zero or more than the card's word can carry."},
-    [ILK_CONFIG_ERROR_UNHOMED_DRIVE] = {"UNHOMED_DRIVE", "`unhomed_max_drive` is not above `dead_zone_drive`, or more than a tenth of `max_drive`."},
+    [ILK_CONFIG_ERROR_UNHOMED_DRIVE] = {"UNHOMED_DRIVE", "`unhomed_max_drive` is not above `dead_zone_drive`, or more than a tenth of the way from there to `max_drive`; or `dead_zone_drive` is more than a fifth of `max_drive`."},
     [ILK_CONFIG_ERROR_AMPLITUDE] = {"AMPLITUDE", "`max_amplitude` is not from 1 to 255 on a HIGH_FREQUENCY card, or not zero on another; `home_amplitude` exceeds it, or is not zero on an axis without a switch."},
     [ILK_CONFIG_ERROR_UNHOMED_TRAVEL] = {"UNHOMED_TRAVEL", "`unhomed_travel_counts` is not above `coast_counts`, or more than a tenth of the range."},
     [ILK_CONFIG_ERROR_HOME_DRIVE] = {"HOME_DRIVE", "`home_drive` is not above `dead_zone_drive`, or more than `unhomed_max_drive`; not zero on an axis without a switch."},

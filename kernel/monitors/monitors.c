@@ -1754,6 +1754,7 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
     const uint64_t full = (uint64_t)a->full_speed_counts_per_s * ms;
     const uint64_t home = (uint64_t)a->home_speed_counts_per_s * ms;
     const uint64_t slow = (uint64_t)a->home_slow_speed_counts_per_s * ms;
+    const uint64_t dead = a->dead_zone_drive;
     const uint64_t one = 1000000u;
     if (!has_motor(a)) {
       continue;
@@ -1763,7 +1764,8 @@ ilk_judgement_t judge_config(const ilk_config_t* config) {
         a->home_offset_counts > a->max_counts) {
       return broken("config: soft limits, coast or home offset", i, a->min_counts, a->max_counts);
     }
-    if (a->unhomed_max_drive <= a->dead_zone_drive || a->unhomed_max_drive > a->max_drive ||
+    if (5u * dead > a->max_drive || a->unhomed_max_drive <= dead ||
+        10u * (a->unhomed_max_drive - dead) > a->max_drive - dead ||
         a->max_amplitude > ((a->card == ILK_CARD_HIGH_FREQUENCY) ? 255u : 0u)) {
       return broken("config: drives or amplitude", i, a->unhomed_max_drive, a->dead_zone_drive);
     }

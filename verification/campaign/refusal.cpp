@@ -56,7 +56,7 @@ constexpr std::array<Spoil, 28> kSpoils{
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.drift_counts = axis.coast_counts - 1u; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.reverse_counts = axis.coast_counts - 1u; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.max_delta_counts = 0; },
-    [](ilk_config_t&, ilk_axis_config_t& axis) { axis.dead_zone_drive = axis.max_drive; },
+    [](ilk_config_t&, ilk_axis_config_t& axis) { axis.dead_zone_drive = axis.max_drive / 5u + 1u; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.home_tolerance_counts = 1; },
     [](ilk_config_t&, ilk_axis_config_t& axis) { axis.stall_effort_ticks = 1; },
     [](ilk_config_t& config, ilk_axis_config_t&) { std::ranges::fill(config.axis, ilk_axis_config_t{}); },

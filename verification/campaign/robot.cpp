@@ -53,10 +53,10 @@ std::uint32_t largest_drive(std::uint32_t card) {
   }
 }
 
-/** Speeds are less than the drive's share of full speed: the dead zone takes part of it. */
+/** Speeds are less than the drive's share of full speed: some of it may be lost. */
 void set_homing_speeds(ilk_axis_config_t& axis) {
   axis.home_drive = axis.unhomed_max_drive;
-  axis.home_slow_drive = axis.max_drive / 20;
+  axis.home_slow_drive = axis.dead_zone_drive + (axis.max_drive - axis.dead_zone_drive) / 20;
   axis.home_amplitude = axis.max_amplitude;
   axis.home_speed_counts_per_s = axis.full_speed_counts_per_s * 2 / 25;
   axis.home_slow_speed_counts_per_s = axis.full_speed_counts_per_s * 3 / 100;
@@ -121,8 +121,8 @@ ilk_axis_config_t make_axis(plant::Random& random, const Mechanics& mechanics,
   axis.deadband_counts = between(random, 1, 4);
   axis.max_drive = axis.card == ILK_CARD_HIGH_FREQUENCY ? largest_drive(axis.card)
                                                         : between(random, 20000, largest_drive(axis.card));
-  axis.dead_zone_drive = axis.max_drive / 50;
-  axis.unhomed_max_drive = axis.max_drive / 10;
+  axis.dead_zone_drive = axis.max_drive / (axis.card != ILK_CARD_HIGH_FREQUENCY && random.coin() ? 6 : 50);
+  axis.unhomed_max_drive = axis.dead_zone_drive + (axis.max_drive - axis.dead_zone_drive) / 10;
   axis.max_amplitude = axis.card == ILK_CARD_HIGH_FREQUENCY ? 200 : 0;
   if (axis.limit_side != ILK_LIMIT_NONE) {
     set_homing_speeds(axis);
@@ -150,6 +150,7 @@ plant::AxisParameters make_parameters(plant::Random& random, const ilk_axis_conf
   if (axis.limit_side != ILK_LIMIT_NONE && random.chance(kAtSwitch)) {
     parameters.start_counts = plant::position_from_switch(axis, random.below(150));
   }
+  parameters.dead_zone_fraction = static_cast<double>(axis.dead_zone_drive) / axis.max_drive;
   parameters.full_speed_counts_per_s = mechanics.speed_counts_per_s;
   parameters.counts_per_revolution = mechanics.speed_counts_per_s / kRevolutionsPerSecondAtFullDrive;
   parameters.lag = plant::Microseconds(mechanics.lag_us);

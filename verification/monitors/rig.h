@@ -18,7 +18,7 @@ static inline void rig_random_axis(rng_t* r, const ilk_common_config_t* m, ilk_a
   static const uint32_t largest[5] = {0u, 0x7FFFFFFFu, 0x3FFFFFFFu, 0x7FFFFFFFu, 397785u};
   const bool small = rng_one_in(r, 2u);
   const uint32_t period = m->period_us;
-  uint32_t v, need, range, home_q, slow_q, biggest;
+  uint32_t v, need, range, unhomed, home, home_q, slow_q, biggest;
   memset(a, 0, sizeof *a);
   a->card = rng_range(r, 1u, 4u);
   a->required = rng_below(r, 2u);
@@ -30,10 +30,12 @@ static inline void rig_random_axis(rng_t* r, const ilk_common_config_t* m, ilk_a
   if (a->max_drive > largest[a->card]) {
     a->max_drive = largest[a->card];
   }
-  a->unhomed_max_drive = a->max_drive / (rng_one_in(r, 3u) ? rng_range(r, 10u, 20u) : 10u);
-  if (a->unhomed_max_drive < 4u) {
-    a->unhomed_max_drive = 4u;
+  a->dead_zone_drive = rng_one_in(r, 2u) ? 0u : rng_below(r, a->max_drive / 5u + 1u);
+  unhomed = (a->max_drive - a->dead_zone_drive) / (rng_one_in(r, 3u) ? rng_range(r, 10u, 20u) : 10u);
+  if (unhomed < 4u) {
+    unhomed = 4u;
   }
+  a->unhomed_max_drive = a->dead_zone_drive + unhomed;
   if (a->card == ILK_CARD_HIGH_FREQUENCY) {
     a->max_amplitude = rng_range(r, 1u, 255u);
   }
@@ -60,15 +62,12 @@ static inline void rig_random_axis(rng_t* r, const ilk_common_config_t* m, ilk_a
   }
   a->stall_ticks = rng_range(r, 20u, cap_ticks(500000u, period));
   if (a->limit_side != ILK_LIMIT_NONE) {
-    a->home_drive = rng_range(r, a->unhomed_max_drive / 2u + 1u, a->unhomed_max_drive);
-    a->home_slow_drive = rng_range(r, a->home_drive / 2u, a->home_drive);
-    if (a->home_slow_drive == 0u) {
-      a->home_slow_drive = 1u;
-    }
+    home = rng_range(r, unhomed / 2u + 1u, unhomed);
+    a->home_drive = a->dead_zone_drive + home;
+    a->home_slow_drive = a->dead_zone_drive + rng_range(r, home / 2u, home);
     if (a->card == ILK_CARD_HIGH_FREQUENCY) {
       a->home_amplitude = rng_range(r, 1u, a->max_amplitude);
     }
-    a->dead_zone_drive = rng_one_in(r, 2u) ? 0u : rng_below(r, a->home_slow_drive);
     home_q = (uint32_t)((uint64_t)a->full_speed_counts_per_s * a->home_drive / a->max_drive);
     slow_q = (uint32_t)((uint64_t)a->full_speed_counts_per_s * a->home_slow_drive / a->max_drive);
     a->home_speed_counts_per_s = home_q ? home_q : 1u;

@@ -148,7 +148,7 @@ typedef enum {
   ILK_CONFIG_ERROR_COAST = 19,          /**< `coast_counts` is zero, shorter than full speed in the latency of the loop, or min + coast is not below max - coast. */
   ILK_CONFIG_ERROR_DEADBAND = 20,       /**< `deadband_counts` is zero or at least half of the range. */
   ILK_CONFIG_ERROR_MAX_DRIVE = 21,      /**< `max_drive` is zero or more than the card's word can carry. */
-  ILK_CONFIG_ERROR_UNHOMED_DRIVE = 22,  /**< `unhomed_max_drive` is not above `dead_zone_drive`, or more than a tenth of `max_drive`. */
+  ILK_CONFIG_ERROR_UNHOMED_DRIVE = 22,  /**< `unhomed_max_drive` is not above `dead_zone_drive`, or more than a tenth of the way from there to `max_drive`; or `dead_zone_drive` is more than a fifth of `max_drive`. */
   ILK_CONFIG_ERROR_AMPLITUDE = 23,      /**< `max_amplitude` is not from 1 to 255 on a HIGH_FREQUENCY card, or not zero on another; `home_amplitude` exceeds it, or is not zero on an axis without a switch. */
   ILK_CONFIG_ERROR_UNHOMED_TRAVEL = 24, /**< `unhomed_travel_counts` is not above `coast_counts`, or more than a tenth of the range. */
   ILK_CONFIG_ERROR_HOME_DRIVE = 25,     /**< `home_drive` is not above `dead_zone_drive`, or more than `unhomed_max_drive`; not zero on an axis without a switch. */

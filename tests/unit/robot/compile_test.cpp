@@ -167,7 +167,7 @@ INSTANTIATE_TEST_SUITE_P(
         RuleBroken{"DEADBAND", "deadband_counts = 1", "deadband_counts = 0", "deadband_counts = 0",
                    "axis.yaw.deadband_counts"},
         RuleBroken{"MAX_DRIVE", "max = 0x1FFFF", "max = 0x40000000", "0x40000000", "axis.pitch.drive.max"},
-        RuleBroken{"UNHOMED_DRIVE", "unhomed_max = 6143", "unhomed_max = 6144", "6144",
+        RuleBroken{"UNHOMED_DRIVE", "unhomed_max = 6143", "unhomed_max = 6974", "6974",
                    "axis.yaw.drive.unhomed_max"},
         RuleBroken{"UNHOMED_TRAVEL", "unhomed_travel_counts = 98", "unhomed_travel_counts = 124", "= 124",
                    "axis.yaw.unhomed_travel_counts"},

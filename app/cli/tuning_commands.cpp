@@ -1,0 +1,198 @@
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands.hpp"
+#include "cli/named_robot.hpp"
+#include "cli/write_file.hpp"
+#include "plant/parameters_file.hpp"
+#include "robot/compile.hpp"
+#include "robot/robot_text.hpp"
+#include "tuning/gain_search.hpp"
+#include "tuning/identification.hpp"
+#include "tuning/step_run.hpp"
+
+namespace interlock::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Failure simulation_refused(const std::string& why) { return {ExitCode::refused, why}; }
+
+/** A robot, as the kernel takes it, on its simulated hardware. */
+struct Simulated {
+  std::filesystem::path file;
+  Robot robot;
+  ilk_config_t config;
+  plant::Parameters plant;
+};
+
+Result<Simulated> simulated(const SimulatedAxis& options, const Installation& installation) {
+  Simulated made{};
+  return installation.robot(options.robot)
+      .and_then([&](const std::filesystem::path& file) {
+        made.file = file;
+        return load_robot(file).map_error(robot_failure);
+      })
+      .and_then([&](const Robot& robot) {
+        made.robot = robot;
+        return compile(robot).map_error(robot_failure);
+      })
+      .and_then([&](const ilk_config_t& config) {
+        made.config = config;
+        return options.plant.empty() ? installation.plant(made.robot.name) : options.plant;
+      })
+      .and_then([&](const std::filesystem::path& file) {
+        return plant::load_parameters(file, made.config).map_error(simulation_refused);
+      })
+      .map([&](const plant::Parameters& parameters) {
+        made.plant = parameters;
+        return made;
+      });
+}
+
+std::string title_of(const Simulated& on, const std::string& axis) {
+  return on.robot.title + ": " + on.robot.find(axis)->title;
+}
+
+/** Writes the robot's file with the changes, unless the kernel would refuse it. */
+Result<void> write_robot(const std::filesystem::path& to, const Simulated& on, const std::string& axis,
+                         const std::vector<NumberChange>& changes) {
+  if (to.empty()) {
+    return {};
+  }
+  std::ifstream input(on.file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(input), {}};
+  std::vector<AxisNumber> numbers;
+  for (const NumberChange& change : changes) {
+    numbers.push_back(change.number);
+  }
+  return with_numbers(text, on.file.string(), axis, numbers)
+      .and_then([&](const std::string& edited) {
+        return parse_robot(edited, to.string())
+            .and_then([](const Robot& robot) { return compile(robot); })
+            .map([&](const ilk_config_t&) { return edited; });
+      })
+      .map_error(robot_failure)
+      .and_then([&](const std::string& edited) { return write_file(to, edited); });
+}
+
+Json to_json(const std::vector<NumberChange>& changes) {
+  Json list = Json::array();
+  for (const NumberChange& change : changes) {
+    list.push_back({{"key", change.number.key}, {"was", change.was}, {"is", change.number.value}});
+  }
+  return list;
+}
+
+Json optional_number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
+
+Json to_json(const StepRun& run) {
+  const StepFigures figures = figures_of(run);
+  return {{"from_counts", run.from_counts},
+          {"target_counts", run.target_counts},
+          {"peak_counts_per_s", run.peak_counts_per_s},
+          {"duration_s", run.duration_s},
+          {"rms_velocity_error_percent", figures.rms_velocity_error_percent},
+          {"largest_position_error_counts", figures.largest_position_error_counts},
+          {"final_error_counts", figures.final_error_counts},
+          {"overshoot_counts", figures.overshoot_counts},
+          {"settle_ms", optional_number(figures.settle_ms)}};
+}
+
+Json to_json(const Identified& found) {
+  Json speeds = Json::array();
+  for (const DriveSpeed& at : found.speeds) {
+    speeds.push_back({{"drive", at.drive},
+                      {"up_counts_per_s", at.up_counts_per_s},
+                      {"down_counts_per_s", at.down_counts_per_s}});
+  }
+  return {{"homing_error", found.homing_error ? Json(*found.homing_error) : Json()},
+          {"dead_zone_drive", found.dead_zone_drive},
+          {"full_speed_counts_per_s", found.full_speed_counts_per_s},
+          {"fit_percent", found.fit_percent},
+          {"lag_ms", found.lag_s * 1000},
+          {"coast_counts", found.coast_counts},
+          {"backlash_counts", found.backlash_counts},
+          {"noise_counts", found.noise_counts},
+          {"hysteresis_counts", optional_number(found.hysteresis_counts)},
+          {"speeds", std::move(speeds)}};
+}
+
+/** One line: robot and axis first. */
+void answer(std::ostream& output, const Simulated& on, const std::string& axis, const Json& found) {
+  Json line{{"robot", on.robot.name}, {"axis", axis}};
+  line.update(found);
+  output << line.dump() << '\n';
+}
+
+/** The step with the gains that were asked for, or with those that a search finds. */
+Result<StepOptions> with_gains(const TuneOptions& options, const Simulated& on) {
+  if (options.write.empty()) {
+    return options.step;
+  }
+  return search_gains(on.robot, on.config, on.plant, options.step)
+      .map_error(simulation_refused)
+      .map([&](const FoundGains& found) {
+        StepOptions step = options.step;
+        step.gains = {found.gains.position_per_s, found.gains.velocity, found.gains.integral_per_s};
+        return step;
+      });
+}
+
+std::vector<NumberChange> gain_changes(const AskedGains& found, const Gains& file) {
+  std::vector<NumberChange> changes;
+  const auto add = [&](const char* key, const std::optional<double>& is, double was) {
+    if (is.value_or(was) != was) {
+      changes.push_back({{key, *is}, was});
+    }
+  };
+  add("gains.position_per_s", found.position_per_s, file.position_per_s);
+  add("gains.velocity", found.velocity, file.velocity);
+  add("gains.integral_per_s", found.integral_per_s, file.integral_per_s);
+  return changes;
+}
+
+}  // namespace
+
+Result<void> tune(const TuneOptions& options, const Installation& installation, std::ostream& output) {
+  return simulated(options, installation).and_then([&](const Simulated& on) {
+    return with_gains(options, on).and_then([&](const StepOptions& step) {
+      return run_step(on.robot, on.config, on.plant, step)
+          .map_error(simulation_refused)
+          .and_then([&](const StepRun& run) {
+            const std::string title = title_of(on, run.axis) + ", " + std::to_string(run.from_counts) +
+                                      " to " + std::to_string(run.target_counts) + " counts";
+            const auto changes = gain_changes(step.gains, on.robot.find(run.axis)->gains);
+            return write_file(options.csv, step_csv(run))
+                .and_then([&] { return write_file(options.svg, step_svg(run, title)); })
+                .and_then([&] { return write_robot(options.write, on, run.axis, changes); })
+                .map([&] {
+                  Json found = to_json(run);
+                  found["changes"] = to_json(changes);
+                  answer(output, on, run.axis, found);
+                });
+          });
+    });
+  });
+}
+
+Result<void> identify(const IdentifyOptions& options, const Installation& installation,
+                      std::ostream& output) {
+  return simulated(options, installation).and_then([&](const Simulated& on) {
+    return interlock::identify(on.robot, on.config, on.plant, options.axis, options.seed)
+        .map_error(simulation_refused)
+        .and_then([&](const Identified& measured) {
+          const auto changes = changes_of(on.robot, *on.robot.find(options.axis), measured);
+          return write_file(options.svg, identified_svg(measured, title_of(on, options.axis)))
+              .and_then([&] { return write_robot(options.write, on, options.axis, changes); })
+              .map([&] {
+                Json found = to_json(measured);
+                found["changes"] = to_json(changes);
+                answer(output, on, options.axis, found);
+              });
+        });
+  });
+}
+
+}  // namespace interlock::cli

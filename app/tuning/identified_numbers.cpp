@@ -1,0 +1,210 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "tuning/identification.hpp"
+
+namespace interlock {
+namespace {
+
+constexpr double coast_margin = 1.25;
+/** What differs by less is the same: of full speed, and of the largest drive. */
+constexpr double same_speed = 0.005;
+constexpr double same_drive = 0.002;
+/** The kernel believes that homing is never slower: loaded and cold it is. */
+constexpr double slowest_share = 0.85;
+constexpr double longest_stall_s = 0.5;
+/** Faster plans leave nothing for the controller to catch up with. */
+constexpr double fastest_plan = 0.85;
+constexpr double planned_share = 0.6;
+
+std::uint32_t whole(double number) { return static_cast<std::uint32_t>(std::ceil(number)); }
+
+void raise(std::uint32_t& number, double least) { number = std::max(number, whole(least)); }
+
+void lower(std::uint32_t& number, double most) {
+  number = std::min(number, std::max(1U, static_cast<std::uint32_t>(most)));
+}
+
+void take_mechanics(Axis& axis, const Identified& found, double period_s) {
+  Mechanics& mechanics = axis.mechanics;
+  const double full = mechanics.full_speed_counts_per_s;
+  if (std::abs(found.full_speed_counts_per_s - full) > same_speed * full) {
+    mechanics.full_speed_counts_per_s = whole(found.full_speed_counts_per_s);
+  }
+  raise(mechanics.noise_counts, found.noise_counts);
+  raise(mechanics.backlash_counts, std::round(found.backlash_counts));
+  raise(mechanics.coast_counts, std::ceil(coast_margin * found.coast_counts) + mechanics.noise_counts);
+  raise(mechanics.max_delta_counts,
+        mechanics.full_speed_counts_per_s * period_s + mechanics.noise_counts + 1);
+}
+
+/** Each drive is as far from the new dead zone to the largest as it was from the old. */
+void take_dead_zone(Axis& axis, const Identified& found) {
+  DriveBounds& drive = axis.drive;
+  const DriveBounds old = drive;
+  const bool is_same = std::abs(found.dead_zone_drive - old.dead_zone) <= same_drive * old.max;
+  if (axis.card == ILK_CARD_HIGH_FREQUENCY || is_same) {
+    return;
+  }
+  drive.dead_zone = whole(found.dead_zone_drive);
+  const auto move = [&](std::uint32_t& number) {
+    const double share = (static_cast<double>(number) - old.dead_zone) / (old.max - old.dead_zone);
+    number = static_cast<std::uint32_t>(drive.dead_zone + share * (drive.max - drive.dead_zone));
+  };
+  move(drive.unhomed_max);
+  if (old.min > old.dead_zone) {
+    move(drive.min);
+  }
+  if (axis.homing) {
+    move(axis.homing->drive);
+    move(axis.homing->slow_drive);
+  }
+}
+
+void take_homing(Axis& axis, const Robot& robot, const Identified& found, double period_s) {
+  Homing& homing = *axis.homing;
+  const Mechanics& mechanics = axis.mechanics;
+  const auto speed_at = [&](std::uint32_t drive) {
+    return found.full_speed_counts_per_s * (drive - found.dead_zone_drive) /
+           (axis.drive.max - found.dead_zone_drive);
+  };
+  // So fast that the way that a stall asks for ends in the longest time that it may allow.
+  const double least =
+      std::ceil((axis.stall.min_counts + mechanics.backlash_counts + mechanics.noise_counts + 1.0) /
+                (longest_stall_s - (ILK_LATENCY_TICKS + 1) * period_s));
+  if (slowest_share * speed_at(homing.slow_drive) < least) {
+    const double share = least / slowest_share / found.full_speed_counts_per_s;
+    homing.slow_drive = whole(found.dead_zone_drive + share * (axis.drive.max - found.dead_zone_drive));
+    homing.drive = std::max(homing.drive, homing.slow_drive);
+  }
+  lower(homing.speed_counts_per_s, slowest_share * speed_at(homing.drive));
+  lower(homing.slow_speed_counts_per_s, slowest_share * speed_at(homing.slow_drive));
+  raise(homing.slow_speed_counts_per_s, least);
+  // A switch is read once a tick: what the axis goes meanwhile is no hysteresis.
+  const double ways =
+      (speed_at(homing.drive) + speed_at(homing.slow_drive)) * period_s + mechanics.noise_counts;
+  raise(homing.hysteresis_counts, std::max(0.0, found.hysteresis_counts.value_or(0.0) - std::ceil(ways)));
+  const double debounced_s = (robot.loop.switch_debounce_ticks + 2.0) * period_s;
+  raise(homing.tolerance_counts,
+        std::ceil(homing.speed_counts_per_s * debounced_s) + 2.0 * mechanics.noise_counts);
+  raise(homing.clear_counts,
+        homing.tolerance_counts + homing.hysteresis_counts + mechanics.coast_counts + 1.0);
+  raise(homing.clear_counts,
+        axis.stall.min_counts + mechanics.backlash_counts + mechanics.noise_counts + 1.0);
+  const double range = axis.soft_limits.max_counts - axis.soft_limits.min_counts;
+  const double back = 2.0 * (homing.clear_counts + homing.hysteresis_counts + 2.0 * mechanics.coast_counts +
+                             mechanics.noise_counts);
+  const double way = range + 2.0 * mechanics.coast_counts + 2 * back;
+  raise(homing.travel_counts, way + mechanics.coast_counts + mechanics.noise_counts + 1);
+  const double waits = 4.0 * mechanics.rest_ticks + 12.0 * robot.loop.switch_debounce_ticks;
+  raise(homing.timeout_ticks,
+        (way / homing.speed_counts_per_s + back / homing.slow_speed_counts_per_s) / period_s + waits + 1);
+}
+
+/** What the kernel asks of the watches over such mechanics (kernel/src/config.c, `watch_error`). */
+void take_watches(Axis& axis, double period_s) {
+  const Mechanics& mechanics = axis.mechanics;
+  StallRule& stall = axis.stall;
+  const double lost = mechanics.backlash_counts + mechanics.noise_counts;
+  const double full = mechanics.full_speed_counts_per_s * period_s;
+  const double slowest = axis.homing ? axis.homing->slow_speed_counts_per_s * period_s : full;
+  const double reversal = 5.0 * mechanics.coast_counts + lost;
+  raise(stall.min_counts, mechanics.noise_counts + 1);
+  raise(stall.driven_ticks, (stall.min_counts + lost) / slowest + ILK_LATENCY_TICKS + 1);
+  raise(stall.driven_ticks, (reversal + stall.min_counts) / full);
+  if (stall.effort_ticks != 0) {
+    raise(stall.effort_ticks, (reversal + 1) / full);
+  }
+  raise(axis.runaway.reverse_counts, mechanics.coast_counts + lost);
+  raise(axis.runaway.drift_counts, mechanics.coast_counts + lost);
+  raise(axis.unhomed_travel_counts, mechanics.coast_counts + mechanics.noise_counts + 1);
+}
+
+void take_rates(Axis& axis) {
+  const double full = axis.mechanics.full_speed_counts_per_s;
+  if (!axis.motion || axis.motion->velocity_counts_per_s <= fastest_plan * full) {
+    return;
+  }
+  const double share = planned_share * full / axis.motion->velocity_counts_per_s;
+  for (double MotionRates::* const rate :
+       {&MotionRates::velocity_counts_per_s, &MotionRates::acceleration_counts_per_s2,
+        &MotionRates::jerk_counts_per_s3}) {
+    (*axis.motion).*rate = std::floor(share * ((*axis.motion).*rate));
+  }
+}
+
+struct Key {
+  const char* name;
+  double (*get)(const Axis&, double period_ms);
+};
+
+constexpr std::array keys{
+    Key{"drive.min", [](const Axis& a, double) -> double { return a.drive.min; }},
+    Key{"drive.dead_zone", [](const Axis& a, double) -> double { return a.drive.dead_zone; }},
+    Key{"drive.unhomed_max", [](const Axis& a, double) -> double { return a.drive.unhomed_max; }},
+    Key{"mechanics.coast_counts", [](const Axis& a, double) -> double { return a.mechanics.coast_counts; }},
+    Key{"mechanics.backlash_counts",
+        [](const Axis& a, double) -> double { return a.mechanics.backlash_counts; }},
+    Key{"mechanics.noise_counts", [](const Axis& a, double) -> double { return a.mechanics.noise_counts; }},
+    Key{"mechanics.max_delta_counts",
+        [](const Axis& a, double) -> double { return a.mechanics.max_delta_counts; }},
+    Key{"mechanics.full_speed_counts_per_s",
+        [](const Axis& a, double) -> double { return a.mechanics.full_speed_counts_per_s; }},
+    Key{"stall.driven_ms", [](const Axis& a, double ms) { return a.stall.driven_ticks * ms; }},
+    Key{"stall.effort_ms", [](const Axis& a, double ms) { return a.stall.effort_ticks * ms; }},
+    Key{"stall.min_counts", [](const Axis& a, double) -> double { return a.stall.min_counts; }},
+    Key{"runaway.reverse_counts", [](const Axis& a, double) -> double { return a.runaway.reverse_counts; }},
+    Key{"runaway.drift_counts", [](const Axis& a, double) -> double { return a.runaway.drift_counts; }},
+    Key{"unhomed_travel_counts", [](const Axis& a, double) -> double { return a.unhomed_travel_counts; }},
+    Key{"motion.velocity_counts_per_s",
+        [](const Axis& a, double) { return a.motion ? a.motion->velocity_counts_per_s : 0; }},
+    Key{"motion.acceleration_counts_per_s2",
+        [](const Axis& a, double) { return a.motion ? a.motion->acceleration_counts_per_s2 : 0; }},
+    Key{"motion.jerk_counts_per_s3",
+        [](const Axis& a, double) { return a.motion ? a.motion->jerk_counts_per_s3 : 0; }},
+};
+
+constexpr std::array homing_keys{
+    std::pair{"homing.drive", &Homing::drive},
+    std::pair{"homing.slow_drive", &Homing::slow_drive},
+    std::pair{"homing.speed_counts_per_s", &Homing::speed_counts_per_s},
+    std::pair{"homing.slow_speed_counts_per_s", &Homing::slow_speed_counts_per_s},
+    std::pair{"homing.travel_counts", &Homing::travel_counts},
+    std::pair{"homing.clear_counts", &Homing::clear_counts},
+    std::pair{"homing.tolerance_counts", &Homing::tolerance_counts},
+    std::pair{"homing.hysteresis_counts", &Homing::hysteresis_counts},
+};
+
+}  // namespace
+
+std::vector<NumberChange> changes_of(const Robot& robot, const Axis& axis, const Identified& found) {
+  const double period_s = robot.period_us * 1e-6;
+  Axis is = axis;
+  take_mechanics(is, found, period_s);
+  take_dead_zone(is, found);
+  if (is.homing) {
+    take_homing(is, robot, found, period_s);
+  }
+  take_watches(is, period_s);
+  take_rates(is);
+  std::vector<NumberChange> changes;
+  const auto add = [&](const char* key, double old, double now) {
+    if (old != now) {
+      changes.push_back({{key, now}, old});
+    }
+  };
+  for (const Key& key : keys) {
+    add(key.name, key.get(axis, period_s * 1000), key.get(is, period_s * 1000));
+  }
+  if (is.homing) {
+    for (const auto& [key, field] : homing_keys) {
+      add(key, (*axis.homing).*field, (*is.homing).*field);
+    }
+    add("homing.timeout_ms", axis.homing->timeout_ticks * period_s * 1000,
+        is.homing->timeout_ticks * period_s * 1000);
+  }
+  return changes;
+}
+
+}  // namespace interlock
