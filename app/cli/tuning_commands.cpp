@@ -126,25 +126,21 @@ void answer(std::ostream& output, const Simulated& on, const std::string& axis, 
   output << line.dump() << '\n';
 }
 
-/** The step with the gains that were asked for, or with those that a search finds. */
-Result<StepOptions> with_gains(const TuneOptions& options, const Simulated& on) {
+/** The best gains, where they are to be written. */
+Result<std::optional<FoundGains>> searched(const TuneOptions& options, const Simulated& on) {
   if (options.write.empty()) {
-    return options.step;
+    return std::nullopt;
   }
   return search_gains(on.robot, on.config, on.plant, options.step)
       .map_error(simulation_refused)
-      .map([&](const FoundGains& found) {
-        StepOptions step = options.step;
-        step.gains = {found.gains.position_per_s, found.gains.velocity, found.gains.integral_per_s};
-        return step;
-      });
+      .map([](const FoundGains& found) { return std::optional(found); });
 }
 
-std::vector<NumberChange> gain_changes(const AskedGains& found, const Gains& file) {
+std::vector<NumberChange> gain_changes(const Gains& found, const Gains& file) {
   std::vector<NumberChange> changes;
-  const auto add = [&](const char* key, const std::optional<double>& is, double was) {
-    if (is.value_or(was) != was) {
-      changes.push_back({{key, *is}, was});
+  const auto add = [&](const char* key, double is, double was) {
+    if (is != was) {
+      changes.push_back({{key, is}, was});
     }
   };
   add("gains.position_per_s", found.position_per_s, file.position_per_s);
@@ -153,26 +149,40 @@ std::vector<NumberChange> gain_changes(const AskedGains& found, const Gains& fil
   return changes;
 }
 
+/** Figures and files of a step with the gains that were found, or else with those that were asked for. */
+Result<Json> step_with(const TuneOptions& options, const Simulated& on,
+                       const std::optional<FoundGains>& found) {
+  StepOptions step = options.step;
+  if (found) {
+    step.gains = {found->gains.position_per_s, found->gains.velocity, found->gains.integral_per_s};
+  }
+  return run_step(on.robot, on.config, on.plant, step)
+      .map_error(simulation_refused)
+      .and_then([&](const StepRun& run) {
+        const std::string title = title_of(on, run.axis) + ", " + std::to_string(run.from_counts) + " to " +
+                                  std::to_string(run.target_counts) + " counts";
+        return write_file(options.csv, step_csv(run))
+            .and_then([&] { return write_file(options.svg, step_svg(run, title)); })
+            .map([&] { return to_json(run); });
+      });
+}
+
 }  // namespace
 
 Result<void> tune(const TuneOptions& options, const Installation& installation, std::ostream& output) {
   return simulated(options, installation).and_then([&](const Simulated& on) {
-    return with_gains(options, on).and_then([&](const StepOptions& step) {
-      return run_step(on.robot, on.config, on.plant, step)
-          .map_error(simulation_refused)
-          .and_then([&](const StepRun& run) {
-            const std::string title = title_of(on, run.axis) + ", " + std::to_string(run.from_counts) +
-                                      " to " + std::to_string(run.target_counts) + " counts";
-            const auto changes = gain_changes(step.gains, on.robot.find(run.axis)->gains);
-            return write_file(options.csv, step_csv(run))
-                .and_then([&] { return write_file(options.svg, step_svg(run, title)); })
-                .and_then([&] { return write_robot(options.write, on, run.axis, changes); })
-                .map([&] {
-                  Json found = to_json(run);
-                  found["changes"] = to_json(changes);
-                  answer(output, on, run.axis, found);
-                });
-          });
+    return searched(options, on).and_then([&](const std::optional<FoundGains>& found) {
+      return step_with(options, on, found).and_then([&](Json figures) {
+        const std::string& axis = options.step.axis;
+        std::vector<NumberChange> changes;
+        if (found) {
+          changes = gain_changes(found->gains, on.robot.find(axis)->gains);
+          figures["worst_step_percent"] = {{"was", found->begun_with_percent},
+                                           {"is", found->rms_velocity_error_percent}};
+          figures["changes"] = to_json(changes);
+        }
+        return write_robot(options.write, on, axis, changes).map([&] { answer(output, on, axis, figures); });
+      });
     });
   });
 }

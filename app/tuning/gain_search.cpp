@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace interlock {
 namespace {
@@ -12,6 +13,11 @@ constexpr double slow_share = 1.0 / 3.0;
 /** A smaller gain of quality is noise. */
 constexpr double least_gain = 0.995;
 constexpr int most_rounds = 6;
+
+double rounded(double gain) {
+  const double digit = gain == 0.0 ? 1.0 : std::pow(10.0, std::floor(std::log10(gain)) - 2);
+  return std::round(gain / digit) * digit;
+}
 
 class Search {
  public:
@@ -51,10 +57,11 @@ class Search {
       for (double Gains::* const gain : gains) {
         for (const double factor : {step, 1 / step}) {
           Gains tried = best.gains;
-          tried.*gain *= factor;
+          tried.*gain = rounded(factor * tried.*gain);
           const auto error = judge(tried);
           if (error && *error < least_gain * best.rms_velocity_error_percent) {
-            best = {tried, *error};
+            best.gains = tried;
+            best.rms_velocity_error_percent = *error;
             better = true;
           }
         }
@@ -81,7 +88,7 @@ RigResult<FoundGains> search_gains(const Robot& robot, const ilk_config_t& confi
     const Gains gains{options.gains.position_per_s.value_or(axis.gains.position_per_s),
                       options.gains.velocity.value_or(axis.gains.velocity),
                       options.gains.integral_per_s.value_or(axis.gains.integral_per_s)};
-    return search.judge(gains).map([&](double error) { return search.improved({gains, error}); });
+    return search.judge(gains).map([&](double error) { return search.improved({gains, error, error}); });
   });
 }
 

@@ -9,10 +9,11 @@
 
 namespace interlock {
 
-/** Gains, and how well the worst step went with them. */
+/** Gains, of three digits, and how well the worst step went with them. */
 struct FoundGains {
   Gains gains;
   double rms_velocity_error_percent = 0.0; /**< of the worst of the steps */
+  double begun_with_percent = 0.0;         /**< the same, with the gains of the beginning */
 };
 
 /**

@@ -80,6 +80,12 @@ class Identification {
   [[nodiscard]] std::uint32_t drive_of(double share) const {
     return std::max(1U, static_cast<std::uint32_t>(std::lround(share * rules_.max_drive)));
   }
+  /** Ticks without progress after which an axis stands: half of what the kernel calls a stall. */
+  [[nodiscard]] std::uint32_t patience_at(std::uint32_t drive) const {
+    const std::uint64_t effort = std::uint64_t{rules_.stall_effort_ticks} * rules_.max_drive / drive;
+    return static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(rules_.stall_ticks, effort == 0 ? rules_.stall_ticks : effort) / 2);
+  }
   [[nodiscard]] std::int32_t position() const { return rig_->axis().position_counts; }
 
   const Axis& axis_;
@@ -190,7 +196,7 @@ RigResult<Line> Identification::move(int direction, std::uint32_t drive, std::in
   const std::int32_t target =
       std::clamp(from + direction * (way + static_cast<std::int32_t>(rules_.coast_counts)),
                  axis_.lowest_setpoint_counts(), axis_.highest_setpoint_counts());
-  const auto patience = rules_.stall_ticks / 2;
+  const std::uint32_t patience = patience_at(drive);
   const auto progress = static_cast<std::int32_t>(rules_.stall_min_counts + rules_.noise_counts);
   std::vector<double> ways{0.0};
   std::int32_t mark = 0;

@@ -1,4 +1,4 @@
-"""`interlock tune`: a step on the simulated hardware; figures, table and plot come out."""
+"""`interlock tune` and `identify`: an axis on the simulated hardware, as figures, plots and robot files."""
 
 import csv
 import json
@@ -8,15 +8,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bare_kernel import BIN, DEADLINE_S
+from bare_kernel import BIN, DEADLINE_S, ROOT
 from test_run import DONE, PRECONDITION, REFUSED, USAGE
 
 THESIS_MOVE = ("--axis", "yaw", "--move", "-600", "--cruise", "833")
 
 
-def tune(*arguments: str | Path, robot: str = "neuro") -> tuple[int, dict[str, Any] | None, str]:
+def tune(
+    *arguments: str | Path, robot: str | Path = "neuro", word: str = "tune"
+) -> tuple[int, dict[str, Any] | None, str]:
     """Exit code, answer and message of one run."""
-    command = [str(part) for part in (BIN / "interlock", "tune", "--robot", robot, *arguments)]
+    command = [str(part) for part in (BIN / "interlock", word, "--robot", robot, *arguments)]
     run = subprocess.run(command, capture_output=True, text=True, timeout=DEADLINE_S)
     return run.returncode, json.loads(run.stdout) if run.stdout else None, run.stderr
 
@@ -92,3 +94,52 @@ def test_what_cannot_be_run_is_refused_with_its_reason(
     answer = tune(*arguments)
     assert answer[:2] == (code, None)
     assert reason in answer[2]
+
+
+def hidden_motors(tmp_path: Path) -> Path:
+    """Simulated hardware of which the robot's file knows nothing."""
+    plant = (ROOT / "models/plant/neuro.toml").read_text()
+    for was, now in (("dead_zone_fraction = 0.015", "dead_zone_fraction = 0.12"), ("= 1000", "= 700")):
+        assert was in plant
+        plant = plant.replace(was, now)
+    file = tmp_path / "hidden.toml"
+    file.write_text(plant)
+    return file
+
+
+def test_an_axis_that_did_not_home_is_measured_and_homes_with_the_file_that_comes_out(tmp_path: Path) -> None:
+    measured, tuned = tmp_path / "measured.toml", tmp_path / "tuned.toml"
+    arguments = ("--axis", "yaw", "--plant", hidden_motors(tmp_path))
+    code, answer, message = tune(*arguments, "--write", measured, word="identify")
+    assert (code, message) == (DONE, "")
+    assert answer is not None
+    assert answer["homing_error"] == "the axis faulted: STALL"
+    assert answer["full_speed_counts_per_s"] == pytest.approx(700, rel=0.005)
+    assert answer["dead_zone_drive"] == pytest.approx(0.12 * 0xEFFF, abs=0.003 * 0xEFFF)
+
+    was = (ROOT / "models/robots/neuro.toml").read_text().splitlines()
+    now = measured.read_text().splitlines()
+    assert len(now) == len(was)
+    different = [new for old, new in zip(was, now, strict=True) if old != new]
+    assert any(f"dead_zone = {answer['changes'][1]['is']:.0f}" in line for line in different)
+    assert len(different) <= len(answer["changes"])
+
+    code, answer, message = tune(*arguments, "--write", tuned, robot=measured)
+    assert (code, message) == (DONE, "")
+    assert answer is not None
+    assert answer["worst_step_percent"]["is"] <= answer["worst_step_percent"]["was"]
+    code, answer, _ = tune(*arguments, robot=tuned, word="identify")
+    assert code == DONE
+    assert answer is not None
+    assert answer["homing_error"] is None
+
+
+def test_a_file_that_the_kernel_would_refuse_is_not_written(tmp_path: Path) -> None:
+    plant = hidden_motors(tmp_path)
+    plant.write_text(plant.read_text().replace("dead_zone_fraction = 0.12", "dead_zone_fraction = 0.3"))
+    measured = tmp_path / "measured.toml"
+    code, _, message = tune("--axis", "feet", "--plant", plant, "--write", measured, word="identify")
+    assert code == REFUSED
+    assert "drive.dead_zone" in message
+    assert "at most a fifth of drive.max" in message
+    assert not measured.exists()

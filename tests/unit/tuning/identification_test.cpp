@@ -1,0 +1,176 @@
+// Mechanics that nobody has written down, measured, and what a robot's file is worth that has them.
+#include "tuning/identification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "plant/parameters_file.hpp"
+#include "project_robots.hpp"
+#include "robot/compile.hpp"
+#include "robot/robot_file.hpp"
+#include "tuning/gain_search.hpp"
+
+namespace interlock {
+namespace {
+
+using test::neuro;
+using test::prostate;
+
+plant::Parameters shipped_plant(const Robot& robot) {
+  return plant::load_parameters(INTERLOCK_PLANTS "/" + robot.name + ".toml", compile(robot).value()).value();
+}
+
+/** A motor of which the robot's file knows nothing. */
+struct Hidden {
+  double dead_zone;
+  double full_speed_counts_per_s;
+  std::uint32_t lag_us;
+  double backlash_counts;
+};
+
+constexpr Hidden hidden_motors[] = {{0.04, 700, 8000, 3},  {0.08, 850, 5000, 1}, {0.12, 600, 8000, 2},
+                                    {0.15, 500, 12000, 4}, {0.0, 1000, 5000, 1}, {0.15, 900, 7000, 1}};
+
+plant::Parameters plant_with(const Robot& robot, const Axis& axis, const Hidden& hidden) {
+  plant::Parameters plant = shipped_plant(robot);
+  plant::AxisParameters& motor = plant.axis[axis.slot];
+  motor.dead_zone_fraction = hidden.dead_zone;
+  motor.full_speed_counts_per_s = hidden.full_speed_counts_per_s;
+  motor.lag = plant::Microseconds(hidden.lag_us);
+  motor.backlash_counts = hidden.backlash_counts;
+  return plant;
+}
+
+/** Of another card, of a short range, and without a switch. */
+std::vector<Axis> three_axes(const Robot& robot) {
+  return {*robot.find("yaw"), *robot.find("pitch"), *robot.find("feet")};
+}
+
+RigResult<Identified> identified(const Robot& robot, const Axis& axis, const plant::Parameters& plant,
+                                 std::uint64_t seed = 1) {
+  return identify(robot, compile(robot).value(), plant, axis.name, seed);
+}
+
+/** The robot's file with these numbers, as it is read and as the kernel takes it. */
+tl::expected<Robot, RobotError> changed(const Robot& robot, const Axis& axis,
+                                        const std::vector<NumberChange>& changes) {
+  const std::string file = INTERLOCK_ROBOTS "/" + robot.name + ".toml";
+  std::ifstream input(file);
+  const std::string text{std::istreambuf_iterator<char>(input), {}};
+  std::vector<AxisNumber> numbers;
+  for (const NumberChange& change : changes) {
+    numbers.push_back(change.number);
+  }
+  return with_numbers(text, file, axis.name, numbers)
+      .and_then([&](const std::string& edited) { return parse_robot(edited, file); })
+      .and_then([](const Robot& parsed) {
+        return compile(parsed).map([&](const ilk_config_t&) { return parsed; });
+      });
+}
+
+double step_error_percent(const Robot& robot, const Axis& axis, const plant::Parameters& plant,
+                          double cruise_counts_per_s) {
+  const auto run =
+      run_step(robot, compile(robot).value(), plant,
+               {.axis = axis.name,
+                .cruise_counts_per_s = cruise_counts_per_s,
+                .full_speed_counts_per_s = robot.find(axis.name)->mechanics.full_speed_counts_per_s});
+  EXPECT_TRUE(run) << axis.name << ": " << run.error();
+  return run ? figures_of(*run).rms_velocity_error_percent : 1e9;
+}
+
+TEST(Identification, AFileThatFitsItsRobotStaysAsItIs) {
+  for (const Robot& robot : {neuro(), prostate()}) {
+    for (const Axis& axis : robot.axes) {
+      const auto found = identified(robot, axis, shipped_plant(robot));
+      ASSERT_TRUE(found) << axis.name << ": " << found.error();
+      EXPECT_FALSE(found->homing_error) << axis.name;
+      for (const NumberChange& change : changes_of(robot, axis, *found)) {
+        ADD_FAILURE() << robot.name << ' ' << axis.name << ' ' << change.number.key << ": " << change.was
+                      << " becomes " << change.number.value;
+      }
+    }
+  }
+}
+
+TEST(Identification, AMotorThatNobodyDescribedIsMeasuredWithinTheStatedBounds) {
+  const Robot robot = neuro();
+  for (const Hidden& hidden : hidden_motors) {
+    for (const Axis& axis : three_axes(robot)) {
+      for (const std::uint64_t seed : {1, 2}) {
+        SCOPED_TRACE(axis.name + ", dead zone " + std::to_string(hidden.dead_zone));
+        const auto found = identified(robot, axis, plant_with(robot, axis, hidden), seed);
+        ASSERT_TRUE(found) << found.error();
+        EXPECT_NEAR(found->dead_zone_drive, hidden.dead_zone * axis.drive.max, 0.003 * axis.drive.max);
+        EXPECT_NEAR(found->full_speed_counts_per_s, hidden.full_speed_counts_per_s,
+                    0.005 * hidden.full_speed_counts_per_s);
+        EXPECT_NEAR(found->lag_s, hidden.lag_us * 1e-6, 0.0015);
+        EXPECT_NEAR(found->backlash_counts, hidden.backlash_counts, 0.75);
+        EXPECT_EQ(found->noise_counts, 1u);
+        EXPECT_LT(found->fit_percent, 0.1);
+      }
+    }
+  }
+}
+
+TEST(Identification, TheFileThatComesOutOfItHomesAndFollowsAsOneWithTheTrueNumbers) {
+  const Robot robot = neuro();
+  for (const Hidden& hidden : hidden_motors) {
+    for (const Axis& axis : three_axes(robot)) {
+      SCOPED_TRACE(axis.name + ", dead zone " + std::to_string(hidden.dead_zone));
+      const plant::Parameters plant = plant_with(robot, axis, hidden);
+      const auto found = identified(robot, axis, plant);
+      ASSERT_TRUE(found) << found.error();
+      const auto file = changed(robot, axis, changes_of(robot, axis, *found));
+      ASSERT_TRUE(file) << file.error().message();
+      const Axis& is = *file->find(axis.name);
+
+      Identified truth = *found;
+      truth.dead_zone_drive = hidden.dead_zone * axis.drive.max;
+      truth.full_speed_counts_per_s = hidden.full_speed_counts_per_s;
+      truth.backlash_counts = hidden.backlash_counts;
+      const auto true_file = changed(robot, axis, changes_of(robot, axis, truth));
+      ASSERT_TRUE(true_file) << true_file.error().message();
+
+      const double cruise = 0.6 * hidden.full_speed_counts_per_s;
+      EXPECT_LE(step_error_percent(*file, is, plant, cruise),
+                1.1 * step_error_percent(*true_file, *true_file->find(axis.name), plant, cruise));
+
+      const auto again = identified(*file, is, plant, 2);
+      ASSERT_TRUE(again) << again.error();
+      EXPECT_FALSE(again->homing_error) << *again->homing_error;
+    }
+  }
+}
+
+TEST(Identification, WhatCannotBeMeasuredIsSaid) {
+  const Robot robot = neuro();
+  EXPECT_EQ(identify(robot, compile(robot).value(), shipped_plant(robot), "elbow", 1).error(),
+            "neuro has no axis \"elbow\"");
+  const Axis& yaw = *robot.find("yaw");
+  EXPECT_EQ(identified(robot, yaw, plant_with(robot, yaw, {0.6, 1000, 5000, 1})).error(),
+            "yaw does not move at half of its largest drive");
+}
+
+TEST(GainSearch, FindsGainsThatAreNoWorseThanThoseItBeganWith) {
+  const Robot robot = neuro();
+  const ilk_config_t config = compile(robot).value();
+  const plant::Parameters plant = shipped_plant(robot);
+  const StepOptions poor{.axis = "yaw",
+                         .gains = {.position_per_s = 2.0, .velocity = 1.5, .integral_per_s = 0.5}};
+  const auto found = search_gains(robot, config, plant, poor);
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_LT(found->rms_velocity_error_percent, 0.8 * found->begun_with_percent);
+  const auto shipped = search_gains(robot, config, plant, {.axis = "yaw"});
+  ASSERT_TRUE(shipped) << shipped.error();
+  EXPECT_LE(shipped->rms_velocity_error_percent, shipped->begun_with_percent);
+  EXPECT_NEAR(found->rms_velocity_error_percent, shipped->rms_velocity_error_percent,
+              0.2 * shipped->rms_velocity_error_percent);
+}
+
+}  // namespace
+}  // namespace interlock
