@@ -77,6 +77,8 @@ struct BiopsyNow {
   double curvature_per_mm = 0.0; /**< largest, as estimated */
   double expected_miss_mm = 0.0;
   bool reachable = true;
+  double tip_sd_mm = 0.0;       /**< standard deviation of where the tip is, as believed, each coordinate */
+  bool images_disagree = false; /**< the newest ones contradict what is believed; insertion waits */
   std::uint32_t images = 0;
   std::uint32_t images_refused = 0;
 };

@@ -44,6 +44,8 @@ json now_json(const ControlView& view) {
           {"curvature_per_mm", now.curvature_per_mm},
           {"expected_miss_mm", now.expected_miss_mm},
           {"reachable", now.reachable},
+          {"tip_sd_mm", now.tip_sd_mm},
+          {"images_disagree", now.images_disagree},
           {"images", now.images},
           {"images_refused", now.images_refused}};
 }

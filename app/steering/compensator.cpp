@@ -65,7 +65,11 @@ KinematicsResult<SteeringCommand> Compensator::step(const NeedleAxes& axes) noex
 KinematicsResult<void> Compensator::see(const NeedleImage& image) noexcept {
   TargetFilter target = target_;
   const auto seen = image.target_mm ? target.see(image.time_s, *image.target_mm) : KinematicsResult<void>();
-  return seen.and_then([&] { return tip_.see(image.time_s, image.tip_mm); }).map([&] { target_ = target; });
+  if (!seen) {
+    target_ = target;  // as before, but for how well images agree
+    return seen;
+  }
+  return tip_.see(image.time_s, image.tip_mm).map([&] { target_ = target; });
 }
 
 KinematicsResult<SteeringCommand> Compensator::command(const NeedleAxes& axes) const noexcept {

@@ -80,6 +80,12 @@ class Compensator {
   [[nodiscard]] const TipEstimate& tip() const noexcept { return tip_.now(); }
   [[nodiscard]] const Eigen::Vector3d& target_mm() const noexcept { return target_.target_mm(); }
 
+  /** Whether the newest images of tip or target contradict what is believed of them: where the needle is, and
+   * where it has to go, is not known well enough to push it on. */
+  [[nodiscard]] bool images_disagree() const noexcept {
+    return tip_.images_disagree() || target_.images_disagree();
+  }
+
  private:
   Compensator(const CompensatorParameters& parameters, const NeedleAxes& axes, const CurvLaw& law,
               TipEstimator tip, const TargetFilter& target);

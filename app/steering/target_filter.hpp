@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "kinematics/kinematics_error.hpp"
+#include "steering/innovation_watch.hpp"
 
 namespace interlock {
 
@@ -31,6 +32,9 @@ class TargetFilter {
 
   [[nodiscard]] const Eigen::Vector3d& target_mm() const noexcept { return target_mm_; }
 
+  /** Whether the target moves more than it is believed to. */
+  [[nodiscard]] bool images_disagree() const noexcept { return watch_.disagrees(); }
+
  private:
   TargetFilter(const TargetBelief& belief, const Eigen::Vector3d& target_mm, double time_s) noexcept;
 
@@ -39,6 +43,7 @@ class TargetFilter {
   Eigen::Vector3d target_mm_;
   double variance_mm2_;
   double time_s_;
+  InnovationWatch watch_;
 };
 
 }  // namespace interlock

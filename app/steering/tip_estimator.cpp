@@ -99,7 +99,9 @@ KinematicsResult<void> TipEstimator::see(double time_s, const Eigen::Vector3d& t
         const double image_variance = belief_.image_sd_mm * belief_.image_sd_mm;
         const Eigen::Matrix3d inverse =
             (covariance_.topLeftCorner<3, 3>() + image_variance * Eigen::Matrix3d::Identity()).inverse();
-        const double surprise = std::sqrt(std::max(0.0, innovation.dot(inverse * innovation)));
+        const double squared = std::max(0.0, innovation.dot(inverse * innovation));
+        const double surprise = std::sqrt(squared);
+        watch_.add(squared);
         const double ahead = innovation.z() / std::sqrt(covariance_(2, 2) + image_variance);
         const auto checked =
             check_range("image_surprise_sd", surprise, 0.0, belief_.widest_surprise_sd).and_then([&] {

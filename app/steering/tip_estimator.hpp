@@ -20,6 +20,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "steering/innovation_watch.hpp"
 #include "steering/tip_model.hpp"
 
 namespace interlock {
@@ -67,6 +68,9 @@ class TipEstimator {
 
   [[nodiscard]] const TipEstimate& now() const noexcept { return now_; }
 
+  /** Whether the images, refused ones too, contradict needle, encoders and what is believed of them. */
+  [[nodiscard]] bool images_disagree() const noexcept { return watch_.disagrees(); }
+
  private:
   using Error = Eigen::Matrix<double, 7, 1>;
   using Covariance = Eigen::Matrix<double, 7, 7>;
@@ -96,6 +100,7 @@ class TipEstimator {
   double curvature_per_mm_;
   Covariance covariance_ = Covariance::Zero();
   TipEstimate now_;
+  InnovationWatch watch_;
 };
 
 }  // namespace interlock

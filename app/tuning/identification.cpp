@@ -322,9 +322,9 @@ RigResult<Identified> identify(const Robot& robot, const ilk_config_t& config,
 
 std::string identified_svg(const Identified& found, const std::string& title) {
   TimeChart chart{title, {}, {}, "drive"};
-  ChartSeries up{"towards larger positions", "#0b62a4", {}};
-  ChartSeries down{"towards smaller ones", "#9aa5b1", {}};
-  ChartSeries line{"the line", "#d1495b", {}};
+  ChartSeries up{"up", "#0b62a4", {}};
+  ChartSeries down{"down", "#9aa5b1", {}};
+  ChartSeries line{"line", "#d1495b", {}};
   std::vector<DriveSpeed> rising = found.speeds;
   std::ranges::sort(rising, {}, &DriveSpeed::drive);
   const double largest = rising.back().drive;

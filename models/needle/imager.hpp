@@ -17,6 +17,9 @@ struct ImagerParameters {
   double period_s = 2.0;     /**< from exposure to exposure; the first at time 0 */
   double age_s = 1.0;        /**< from an exposure to the arrival of its image */
   double deviation_mm = 0.5; /**< of tip and target, each coordinate, normal */
+  double tip_bias_mm = 0.0;  /**< by which the artefact of the needle lies beside the tip, along x */
+  double breathing_mm = 0.0; /**< amplitude by which a breath moves all that is seen, along y */
+  double breath_s = 4.3;     /**< a breath lasts; fourteen a minute, a person at rest */
 };
 
 /** What an image shows, in the guide frame. */

@@ -25,7 +25,7 @@ Drawn draw(const SteeringWorld& world, std::uint64_t seed) {
   drawn.needle.curvature_per_mm =
       world.curvature_per_mm * (1.0 + noise.between(-world.curvature_error, world.curvature_error));
   drawn.needle.wander_rad = world.wander_rad;
-  drawn.needle.bevel_rad = noise.normal(world.bevel_sd_rad);
+  drawn.needle.bevel_rad = world.bevel_rad + noise.normal(world.bevel_sd_rad);
   drawn.needle.entry_mm = noise.normal_vector(world.entry_sd_mm).head<2>();
   drawn.needle.tilt_rad = noise.normal_vector(world.tilt_sd_rad).head<2>();
   const double shift_mm = noise.between(world.least_shift_mm, world.most_shift_mm);
@@ -48,7 +48,7 @@ SteeringOutcome insert(const SteeringWorld& world, Steering steering, std::uint6
                        const CompensatorParameters& parameters) {
   const Drawn drawn = draw(world, seed);
   const Eigen::Vector3d planned_mm(0.0, 0.0, world.depth_mm);
-  const Eigen::Vector3d target_mm = planned_mm + drawn.shift_mm;
+  Eigen::Vector3d target_mm = planned_mm + drawn.shift_mm;
   const bool compensates = steering == Steering::published || steering == Steering::averaged;
 
   CompensatorParameters tuned = parameters;
@@ -67,10 +67,15 @@ SteeringOutcome insert(const SteeringWorld& world, Steering steering, std::uint6
   for (std::uint64_t tick = 1; !command.arrived && outcome.duration_s < longest_s; ++tick) {
     outcome.duration_s = static_cast<double>(tick) * period_s;
     const NeedleAxes axes{outcome.duration_s, needle.seen_insertion_mm(), needle.seen_rotation_rad()};
+    target_mm.z() = planned_mm.z() + drawn.shift_mm.z() + world.dragged_share * axes.insertion_mm;
     const auto image = imager.at(outcome.duration_s, needle.tip_mm(), target_mm);
     if (compensates && image) {
       const bool fused = compensator.see({image->time_s, image->tip_mm, image->target_mm}).has_value();
       ++(fused ? outcome.images_fused : outcome.images_refused);
+      if (!outcome.flagged) {
+        outcome.flagged = compensator.images_disagree();
+        outcome.flagged_error_mm = (compensator.tip().guide_from_tip.translation() - needle.tip_mm()).norm();
+      }
     }
     if (compensates && tick % periods_a_plan == 0) {
       command = compensator.step(axes).value();

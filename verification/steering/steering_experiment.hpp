@@ -30,7 +30,9 @@ struct SteeringWorld {
   double most_shift_mm = 10.0;
   double entry_sd_mm = 0.3;             /**< normal, x and y */
   double tilt_sd_rad = 0.00873;         /**< normal, about x and y: half a degree */
+  double bevel_rad = 0.0;               /**< by which the bevel is off for every needle */
   double bevel_sd_rad = 0.035;          /**< normal: two degrees */
+  double dragged_share = 0.0;           /**< of the depth, by which the needle pushes the target ahead */
   double wander_rad = 1e-3;             /**< of the way ahead after a millimetre of tissue, normal */
   std::uint32_t force_noise_counts = 3; /**< of the hand's sensor, either way */
   needle::ImagerParameters imager{};
@@ -49,6 +51,8 @@ struct SteeringOutcome {
   std::uint32_t images_refused = 0;
   std::uint32_t out_of_reach = 0; /**< periods with a target that the needle could not bend to */
   bool arrived = false;
+  bool flagged = false;          /**< the images disagreed for a while */
+  double flagged_error_mm = 0.0; /**< of the estimated tip when they first did, or at the end */
 };
 
 /** Same seed, same needle, hand, shift and noise, whatever steers. `parameters` tune the compensator. */

@@ -65,6 +65,7 @@ json tip_errors(const SteeringWorld& world, Steering steering, Seeds seeds) {
   std::uint32_t refused = 0;
   std::uint32_t fused = 0;
   std::uint32_t out_of_reach = 0;
+  std::uint32_t flagged = 0;
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     const SteeringOutcome outcome = insert(world, steering, seed);
     errors.push_back(outcome.error_mm);
@@ -76,6 +77,7 @@ json tip_errors(const SteeringWorld& world, Steering steering, Seeds seeds) {
     refused += outcome.images_refused;
     fused += outcome.images_fused;
     out_of_reach += outcome.out_of_reach > 0 ? 1 : 0;
+    flagged += outcome.flagged ? 1 : 0;
   }
   return {{"insertions", errors.size()},
           {"arrived", arrived},
@@ -86,6 +88,7 @@ json tip_errors(const SteeringWorld& world, Steering steering, Seeds seeds) {
           {"duration_s", spread(durations)},
           {"images_fused", fused},
           {"images_refused", refused},
+          {"flagged", flagged},
           {"insertions_out_of_reach_for_a_while", out_of_reach}};
 }
 
@@ -109,6 +112,18 @@ json steering(Seeds seeds) {
            {"stiff needle, 0.0022 per mm", stiff}, {"images of 1 mm", blurred}, {"no shift", unshifted}}) {
     result[name]["even rotation"] = tip_errors(world, Steering::spinning, seeds);
     result[name]["compensation"] = tip_errors(world, Steering::averaged, seeds);
+  }
+  for (const double share : {0.25, 0.5, 1.0, 2.0}) {
+    std::map<std::string, SteeringWorld> worlds;
+    worlds["breathing"].imager.breathing_mm = 3.0 * share;
+    worlds["tip image biased"].imager.tip_bias_mm = 2.0 * share;
+    worlds["target pushed ahead"].dragged_share = 0.06 * share;
+    worlds["bevel off"].bevel_rad = 0.349 * share;
+    for (const auto& [name, world] : worlds) {
+      json row = tip_errors(world, Steering::averaged, seeds);
+      row["share"] = share;
+      result[name].push_back(std::move(row));
+    }
   }
   return result;
 }

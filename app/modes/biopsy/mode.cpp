@@ -177,6 +177,8 @@ bool BiopsyMode::plan_steering(const ilk_snapshot_t& snapshot) noexcept {
   now_.curvature_per_mm = run_->compensator.tip().curvature_per_mm;
   now_.expected_miss_mm = command_.expected_miss_mm;
   now_.reachable = command_.reachable;
+  now_.tip_sd_mm = run_->compensator.tip().position_sd_mm;
+  now_.images_disagree = run_->compensator.images_disagree();
   return true;
 }
 
@@ -186,7 +188,8 @@ bool BiopsyMode::push(const ilk_snapshot_t& snapshot, double time_s) noexcept {
   const double left_mm = std::max(0.0, end_mm - insertion_.position);
   now_.left_mm = left_mm;
   const auto desired = run_->hand.force_n(force_.readings().hand).and_then([&](double force_n) {
-    let_go_ = let_go_ || std::abs(force_n) <= run_->hand_law.deadband_n;
+    const bool rests = std::abs(force_n) <= run_->hand_law.deadband_n;
+    let_go_ = (let_go_ || rests) && !now_.images_disagree;
     now_.waits_for_hand = !let_go_;
     return cooperative_speed(run_->hand_law, force_n, let_go_, left_mm);
   });

@@ -6,6 +6,10 @@
  * A press of the pedal follows the hand only once the hand has let go: what the sensor tells before is a zero
  * that is wrong, or a hand that does not know of the press.
  *
+ * Nor does it follow the hand while the newest images contradict what is believed of tip or target: where the
+ * needle is, or has to go, is not known well enough then. It goes on once newer ones agree again and the hand
+ * has let go.
+ *
  * The force is never acted upon for longer than 20 ms: after 8 ms without a new reading the task ends, and a
  * MOVE holds for 10 ms at most, so that an app that falls silent keeps that promise as well. Every error of
  * force or steering ends the task for both axes, which give back their drive.

@@ -94,6 +94,15 @@ class BiopsyModeTest : public testing::Test {
     }
   }
 
+  /** An image of now, of the tip where the steering believes it to be, and this far beside. */
+  void show_tip_beside(double beside_mm) {
+    const Eigen::Vector3d tip = run_->compensator.tip().guide_from_tip.translation();
+    loop_.show({1,
+                {(loop_.seen_tick() - run_->start_tick) * tick_s, tip + Eigen::Vector3d(beside_mm, 0.0, 0.0),
+                 std::nullopt}});
+    loop_.run(20);
+  }
+
   ClosedLoop loop_;
   std::shared_ptr<BiopsyRun> run_;
   double shown_s_ = 0.0;
@@ -292,6 +301,44 @@ TEST_F(BiopsyModeTest, APunctureIsCuedByATremblingNeedle) {
   EXPECT_TRUE(cued);
   EXPECT_GT(backward_mm, 0.05) << "the hand must feel it";
   EXPECT_LT(backward_mm, 0.5);
+}
+
+TEST_F(BiopsyModeTest, WhereImagesContradictWhatIsBelievedTheInsertionWaitsUntilTheyAgreeAndTheHandLetGo) {
+  begin();
+  loop_.run(50);
+  press_hand(3.0);
+  loop_.run(1000);
+  const auto depth = [&] { return loop_.state().axis[needle_push].position_counts; };
+  const auto moves = [&] {
+    const std::int32_t before = depth();
+    loop_.run(500);
+    return depth() - before > 100;
+  };
+  show_tip_beside(0.3);
+  show_tip_beside(-0.4);
+  EXPECT_FALSE(loop_.biopsy().now().images_disagree);
+  ASSERT_TRUE(moves());
+
+  for (const double beside_mm : {20.0, -20.0}) {  // far beyond what the estimator takes
+    show_tip_beside(beside_mm);
+  }
+  EXPECT_TRUE(loop_.biopsy().now().images_disagree);
+  EXPECT_EQ(loop_.biopsy().now().images_refused, 2u);
+  loop_.run(100);
+  EXPECT_FALSE(moves());
+  EXPECT_TRUE(loop_.biopsy().is_open());
+
+  for (std::size_t n = 0; n < InnovationWatch::window; ++n) {
+    show_tip_beside(0.1);
+  }
+  EXPECT_FALSE(loop_.biopsy().now().images_disagree);
+  EXPECT_TRUE(loop_.biopsy().now().waits_for_hand);
+  EXPECT_FALSE(moves());
+  press_hand(0.0);
+  loop_.run(50);
+  press_hand(3.0);
+  loop_.run(100);
+  EXPECT_TRUE(moves());
 }
 
 TEST_F(BiopsyModeTest, AnImageThatCannotBeIsCountedAndChangesNothing) {

@@ -55,6 +55,7 @@ TEST(TargetFilter, refuses_what_is_too_far_off_to_be_the_target) {
   EXPECT_EQ(target.see(1.0, planned + Vector3d(0.0, 31.0, 0.0)).error().quantity, "target_shift_mm");
   EXPECT_EQ(target.target_mm(), planned);
   EXPECT_TRUE(target.see(1.0, planned + Vector3d(0.0, 29.0, 0.0)));
+  EXPECT_TRUE(target.images_disagree()) << "refused or not, two images contradict the plan";
 }
 
 TEST(TargetFilter, answers_nonsense_with_an_error) {

@@ -1938,6 +1938,10 @@ export interface components {
             expected_miss_mm: number;
             /** @description False: even the largest curvature will miss the target. */
             reachable: boolean;
+            /** @description Standard deviation of where the tip is, as believed, each coordinate. */
+            tip_sd_mm: number;
+            /** @description The newest images contradict what is believed of tip or target. The insertion waits until newer ones agree and the hand has let go. */
+            images_disagree: boolean;
             images: number;
             images_refused: number;
         };

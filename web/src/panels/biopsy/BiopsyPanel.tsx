@@ -169,7 +169,13 @@ function Now({ now }: { readonly now: BiopsyNow }) {
       <dd>
         {now.depth_mm.toFixed(1)} mm, {now.left_mm.toFixed(1)} mm left, {now.speed_mm_s.toFixed(1)} mm/s
       </dd>
-      {now.waits_for_hand && (
+      {now.images_disagree && (
+        <dd className="bad" role="alert">
+          The newest images contradict where needle or target are believed to be: the insertion waits. Look at
+          the images. It goes on once newer ones agree and the hand has let go; otherwise end it and retract.
+        </dd>
+      )}
+      {now.waits_for_hand && !now.images_disagree && (
         <dd className="bad" role="alert">
           The force sensor was pressed when the pedal was. Let go of it, or zero the forces, before it is
           followed.
@@ -182,7 +188,7 @@ function Now({ now }: { readonly now: BiopsyNow }) {
       </dd>
       <dt>Images</dt>
       <dd>
-        {now.images} taken, {now.images_refused} refused
+        {now.images} taken, {now.images_refused} refused; tip known within {(2 * now.tip_sd_mm).toFixed(1)} mm
       </dd>
       <dt>Membrane</dt>
       <dd className={now.cue ? "cue" : ""}>{now.cue ? "PUNCTURED" : now.armed ? "listening" : "–"}</dd>
