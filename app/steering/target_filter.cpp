@@ -37,13 +37,14 @@ KinematicsResult<void> TargetFilter::see(double time_s, const Eigen::Vector3d& t
   return check_range("image_time_s", time_s, time_s_, latest_s)
       .and_then([&] { return check_target(target_mm); })
       .and_then([&] {
-        const double variance_mm2 =
-            variance_mm2_ + belief_.wander_mm * belief_.wander_mm * (time_s - time_s_);
-        const double innovation_mm2 = variance_mm2 + belief_.image_sd_mm * belief_.image_sd_mm;
-        watch_.add((target_mm - target_mm_).squaredNorm() / innovation_mm2);
+        const double image_mm2 = belief_.image_sd_mm * belief_.image_sd_mm;
+        double variance_mm2 = variance_mm2_ + belief_.wander_mm * belief_.wander_mm * (time_s - time_s_);
+        if (watch_.add((target_mm - target_mm_).squaredNorm() / (variance_mm2 + image_mm2))) {
+          variance_mm2 = belief_.shift_sd_mm * belief_.shift_sd_mm;  // it is elsewhere now
+        }
         const double shift_mm = (target_mm - planned_mm_).norm();
         return check_range("target_shift_mm", shift_mm, 0.0, belief_.farthest_mm).map([&] {
-          const double gain = variance_mm2 / innovation_mm2;
+          const double gain = variance_mm2 / (variance_mm2 + image_mm2);
           target_mm_ += gain * (target_mm - target_mm_);
           variance_mm2_ = (1.0 - gain) * variance_mm2;
           time_s_ = time_s;

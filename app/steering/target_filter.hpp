@@ -32,7 +32,8 @@ class TargetFilter {
 
   [[nodiscard]] const Eigen::Vector3d& target_mm() const noexcept { return target_mm_; }
 
-  /** Whether the target moves more than it is believed to. */
+  /** Whether the target has moved more than it is believed to: then it is looked for anew, and the newest
+   * images have not agreed on its place yet. */
   [[nodiscard]] bool images_disagree() const noexcept { return watch_.disagrees(); }
 
  private:

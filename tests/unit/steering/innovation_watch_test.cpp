@@ -45,16 +45,35 @@ TEST(InnovationWatch, PointsThatScatterAsTheyAreSaidToDisagreeOnceInThousandsOfW
   EXPECT_LE(disagreements, 10);
 }
 
-TEST(InnovationWatch, OneWildPointSaysNothingTwoDoUntilTheWindowHasPassed) {
+TEST(InnovationWatch, OneWildPointSaysNothingAndTwoDoUntilSomeAgreeAgain) {
   InnovationWatch watch;
-  watch.add(1e9);
-  EXPECT_FALSE(watch.disagrees());
-  watch.add(1e9);
-  EXPECT_TRUE(watch.disagrees());
-  for (std::size_t n = 1; n < InnovationWatch::window; ++n) {
-    watch.add(3.0);
+  EXPECT_FALSE(watch.add(1e9));
+  EXPECT_TRUE(watch.add(1e9));
+  for (std::size_t n = 0; n < InnovationWatch::agreeing; ++n) {
+    EXPECT_TRUE(watch.disagrees());
+    EXPECT_FALSE(watch.add(3.0));
   }
   EXPECT_FALSE(watch.disagrees());
+}
+
+TEST(InnovationWatch, ATargetThatJumpsIsFoundAnewAndAgreesThere) {
+  const Eigen::Vector3d planned(0.0, 0.0, 70.0);
+  const Eigen::Vector3d jumped(4.0, -3.0, 70.0);
+  TargetFilter target = TargetFilter::create({}, planned, 0.0).value();
+  double time_s = 0.0;
+  for (int image = 0; image < 10; ++image) {
+    ASSERT_TRUE(target.see(time_s += 2.0, planned));
+    ASSERT_FALSE(target.images_disagree());
+  }
+  ASSERT_TRUE(target.see(time_s += 2.0, jumped));
+  ASSERT_TRUE(target.see(time_s += 2.0, jumped));
+  EXPECT_TRUE(target.images_disagree());
+  EXPECT_LT((target.target_mm() - jumped).norm(), 0.1);
+  for (std::size_t image = 0; image < InnovationWatch::agreeing; ++image) {
+    ASSERT_TRUE(target.images_disagree());
+    ASSERT_TRUE(target.see(time_s += 2.0, jumped));
+  }
+  EXPECT_FALSE(target.images_disagree());
 }
 
 TEST(InnovationWatch, AnInsertionAsItIsBelievedToBeIsNotFlagged) {
