@@ -56,6 +56,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
                registry_,
                bench_,
                biopsy_,
+               holds_,
                store,
                sessions_,
                motion_control_,
@@ -113,7 +114,10 @@ void Api::follow_proposals() {
 
 void Api::follow_kernel() {
   // Before any answer of the kernel: whoever is answered finds expired what that request expired.
-  control_.on_orders = [this] { look_after_registration(context_.view()); };
+  control_.on_orders = [this] {
+    look_after_registration(context_.view());
+    tell_holds();
+  };
   control_.on_event = [this](const ilk_event_t& event) {
     json message = event_json(event);
     spdlog::info("kernel: {}", message.dump());
@@ -152,6 +156,7 @@ void Api::follow_streams() {
 void Api::follow_sessions() {
   sessions_.on_end([this](std::uint32_t session) {
     motion_control_.release(session);
+    holds_.end_source({.session = session});
     stream_.end_session(session);
     if (bench_.held_by(session)) {
       std::string why = "Session " + std::to_string(session) + ", which pressed it, has ended.";
@@ -258,6 +263,17 @@ void Api::tell_biopsy(const ControlView& seen) {
   stream_.send_text(message);
 }
 
+/** Whenever something changed but the age of a scan. */
+void Api::tell_holds() {
+  json now = holds_.to_json();
+  if (now != told_holds_) {
+    told_holds_ = std::move(now);
+    json message = holds_.to_json(context_.steady_clock());
+    message["type"] = "holds";
+    stream_.send_text(message);
+  }
+}
+
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
@@ -325,6 +341,7 @@ asio::awaitable<void> Api::broadcast() {
           encode_state(seen, context_.config, open_targets(context_.robot, registry_), steady_clock::now()));
     }
     tell_biopsy(seen);
+    tell_holds();
     look_after_pedal(seen);
     look_after_registration(seen);
     look_after_sessions();

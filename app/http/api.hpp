@@ -86,6 +86,7 @@ class Api {
   void follow_streams();
   void note_refusal(const Request& request, const Caller& caller, const Problem& problem);
   void tell_biopsy(const ControlView& seen);
+  void tell_holds();
   void look_after_pedal(const ControlView& seen);
   void look_after_registration(const ControlView& seen);
   boost::asio::awaitable<void> expire_registration(std::string reason);
@@ -98,6 +99,8 @@ class Api {
   LogTail log_tail_;
   Bench bench_;
   BiopsyService biopsy_;
+  HoldService holds_{control_};
+  nlohmann::json told_holds_;
   LiveSessions sessions_;
   MotionControl motion_control_;
   WorkPool work_;
@@ -115,6 +118,7 @@ class Api {
   PositionRoutes position_routes_{context_, router_}; /**< before the axes, whose pattern its paths match */
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
+  HoldRoutes hold_routes_{context_, router_};
   JogRoutes jog_routes_{context_, router_};
   BenchRoutes bench_routes_{context_, router_};
   BiopsyRoutes biopsy_routes_{context_, router_};
