@@ -6,6 +6,8 @@ test("a scan is shown in the header without moving the page, and nothing is appr
   robot,
 }) => {
   await robot.unlockRobot();
+  const axis = robot.axis("Lateral");
+  await axis.enable();
   const header = page.locator("header.header");
   const before = await header.boundingBox();
   const status = robot.panel("Status");
@@ -13,9 +15,13 @@ test("a scan is shown in the header without moving the page, and nothing is appr
   const strip = page.getByRole("status", { name: "Scan" });
   await expect(strip).toHaveText(/HELD STILL FOR A SCAN for \d+ s, by \w+, session \d+\. Nothing moves/);
   expect(await header.boundingBox()).toEqual(before);
-  await page.goto("#/proposals");
+  await axis.propose("-1");
+  await expect(await axis.expectRefusal("SCANNING")).toContainText(
+    "Wait for its end, or end it in the console",
+  );
+  await robot.open("Proposals");
   await expect(strip).toBeVisible();
-  await page.goto("#/robot");
+  await robot.open("Robot");
   await status.getByRole("button", { name: "Scan has ended" }).click();
   await expect(strip).toBeHidden();
 });
