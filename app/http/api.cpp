@@ -10,6 +10,7 @@
 #include "service/reply.hpp"
 #include "service/status_json.hpp"
 #include "service/targeting_store.hpp"
+#include "store/settings.hpp"
 #include "system/as_result.hpp"
 #include "system/launch.hpp"
 
@@ -263,6 +264,23 @@ void Api::tell_biopsy(const ControlView& seen) {
   stream_.send_text(message);
 }
 
+void Api::restore_holds(const json& kept) {
+  context_.restore_holds(kept);
+  kept_holds_ = kept;
+}
+
+asio::awaitable<void> Api::keep_holds() {
+  auto work = [kept = kept_holds_, now = context_.clock()](Store& store) {
+    return store.transact([&](Transaction& transaction) -> Stored<void> {
+      Settings(transaction).set(HoldService::setting, kept, now);
+      return {};
+    });
+  };
+  if (const auto stored = co_await context_.store.run(std::move(work)); !stored) {
+    spdlog::error("a restart of the app would forget what is held still: {}", stored.error().detail);
+  }
+}
+
 /** Whenever something changed but the age of a scan. */
 void Api::tell_holds() {
   json now = holds_.to_json();
@@ -271,6 +289,10 @@ void Api::tell_holds() {
     json message = holds_.to_json(context_.steady_clock());
     message["type"] = "holds";
     stream_.send_text(message);
+  }
+  if (json kept = holds_.kept(); kept != kept_holds_) {
+    kept_holds_ = std::move(kept);
+    launch(context_.executor, keep_holds());
   }
 }
 

@@ -53,6 +53,9 @@ class Api {
   /** Has the check of the audit compare the heads that the recorder noted in that file. */
   void compare_with(std::filesystem::path noted_heads) { context_.noted_heads = std::move(noted_heads); }
 
+  /** Holds what was held when the app ended (`HoldService::kept`). */
+  void restore_holds(const nlohmann::json& kept);
+
   /** Ends every proposal, and records by whom the robot was stopped. */
   boost::asio::awaitable<void> record_stop(StopMade made);
 
@@ -87,6 +90,7 @@ class Api {
   void note_refusal(const Request& request, const Caller& caller, const Problem& problem);
   void tell_biopsy(const ControlView& seen);
   void tell_holds();
+  boost::asio::awaitable<void> keep_holds();
   void look_after_pedal(const ControlView& seen);
   void look_after_registration(const ControlView& seen);
   boost::asio::awaitable<void> expire_registration(std::string reason);
@@ -101,6 +105,7 @@ class Api {
   BiopsyService biopsy_;
   HoldService holds_{control_};
   nlohmann::json told_holds_;
+  nlohmann::json kept_holds_ = holds_.kept(); /**< as the store has it, or soon will */
   LiveSessions sessions_;
   MotionControl motion_control_;
   WorkPool work_;

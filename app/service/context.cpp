@@ -117,6 +117,11 @@ void Context::end_scan() const {
   registry.hold_still(false);
 }
 
+void Context::restore_holds(const nlohmann::json& kept) const {
+  holds.restore(kept, clock(), steady_clock());
+  registry.hold_still(holds.scanning());
+}
+
 void Context::note(std::optional<AuditEntry> entry) const {
   if (entry) {
     store.note(std::move(*entry));

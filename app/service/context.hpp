@@ -84,6 +84,8 @@ struct Context {
   void begin_scan(const HoldSource& source) const;
   /** The scan is over. */
   void end_scan() const;
+  /** Holds what was held when the app ended. */
+  void restore_holds(const nlohmann::json& kept) const;
 
   /** Has the record written that is due, if one is. */
   void note(std::optional<AuditEntry> entry) const;

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace interlock {
@@ -67,6 +68,29 @@ void HoldService::end_source(const HoldSource& source) {
     holds_.gate.signal.release();
     publish();
   }
+}
+
+json HoldService::kept() const {
+  json kept{{"gate_in_use", holds_.gate.in_use}, {"scan", nullptr}};
+  if (holds_.scanning) {
+    kept["scan"] = {
+        {"session", scan_.source.session}, {"source", scan_.source.name}, {"since", iso_8601(scan_.begun)}};
+  }
+  return kept;
+}
+
+/** A connection has another number by now, so that a scan of one is ended by whoever is in control. */
+void HoldService::restore(const json& kept, UtcTime time, SteadyTime now) {
+  holds_.gate.in_use = kept.at("gate_in_use").get<bool>();
+  if (const json& scan = kept.at("scan"); !scan.is_null()) {
+    const UtcTime begun = parse_iso_8601(scan.at("since").get<std::string>()).value_or(time);
+    holds_.scanning = true;
+    scan_.source = {.session = scan.at("session").get<std::uint32_t>(),
+                    .name = scan.at("source").get<std::string>()};
+    scan_.begun = begun;
+    scan_.since = now - std::max(UtcTime::duration::zero(), time - begun);
+  }
+  publish();
 }
 
 json HoldService::to_json() const {

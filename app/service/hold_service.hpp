@@ -5,7 +5,7 @@
  * Belongs to the network thread; how old a signal is, the control thread judges (motion/outside_holds.hpp).
  * Both begin at once, whoever asks. Only whoever is in control turns the gate off; a scan is ended by whoever
  * is in control, or by its source. What a source leaves behind stays held: its gate is closed, its scan goes
- * on.
+ * on. So does what was held when the app ended.
  */
 #pragma once
 
@@ -35,6 +35,9 @@ struct HoldSource {
 
 class HoldService {
  public:
+  /** Of the setting in which the store has what is `kept`. */
+  static constexpr const char* setting = "holds";
+
   /** `control` must outlive it. */
   explicit HoldService(ControlClient& control) : control_(control) {}
 
@@ -64,6 +67,11 @@ class HoldService {
   [[nodiscard]] bool gate_in_use() const { return holds_.gate.in_use; }
   /** Whether a scan goes on. */
   [[nodiscard]] bool scanning() const { return holds_.scanning; }
+
+  /** What is to be held still after a restart of the app. */
+  [[nodiscard]] nlohmann::json kept() const;
+  /** Holds what `kept` gave before the restart. */
+  void restore(const nlohmann::json& kept, UtcTime time, SteadyTime now);
 
   /** Schema `Holds` of spec/openapi.yaml, but for the age of the scan. */
   [[nodiscard]] nlohmann::json to_json() const;

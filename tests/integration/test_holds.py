@@ -11,6 +11,7 @@ from motion import (
     press,
     proposal,
     propose,
+    restart_app,
     unlock,
     wait_for_mode,
     wait_for_proposal,
@@ -148,7 +149,11 @@ def test_an_imager_holds_still_and_its_end_opens_nothing(robot: Stack) -> None:
     ):
         refused = judge(call(robot.api, "POST", path, body))
         assert (refused.status_code, refused.json()["code"]) == (409, "SCANNING"), refused.text
-    wait_until("it grows older", lambda: holds(robot)["scan"]["age_s"] > shown["age_s"])
+    age_s = holds(robot)["scan"]["age_s"]
+    restart_app(robot)
+    robot.take_control()
+    assert holds(robot)["scan"]["active"], "a restart of the app ends no scan"
+    wait_until("it grows older", lambda: holds(robot)["scan"]["age_s"] > age_s)
     put(robot, "scan", active=False)
     assert propose(robot, -100, slot=4)
 

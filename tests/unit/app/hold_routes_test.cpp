@@ -1,4 +1,5 @@
 #include "http_fixture.hpp"
+#include "store/settings.hpp"
 
 namespace interlock::web {
 namespace {
@@ -66,6 +67,7 @@ TEST_F(HoldRoutesTest, DuringAScanNothingIsApprovedNorJoggedAndProposalsWait) {
   for (const auto& [path, body] :
        {std::pair<std::string, json>("/api/proposals", {{"slot", 3}, {"target_counts", 1000}}),
         {"/api/jog", {{"slot", 3}, {"direction", "increasing"}}}}) {
+    show(test::ready_view());
     const Answered refused = post(path, body.dump());
     EXPECT_EQ(refused.status, 409u) << path;
     EXPECT_EQ(refused.problem()["code"], "SCANNING") << path;
@@ -74,6 +76,7 @@ TEST_F(HoldRoutesTest, DuringAScanNothingIsApprovedNorJoggedAndProposalsWait) {
   EXPECT_FALSE(channel_->commands.pop(command));
   ASSERT_EQ(scan(false).status, 200u);
   EXPECT_FALSE(channel_->holds.newest().scanning);
+  show(test::ready_view());
   EXPECT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").status, 201u);
 }
 
@@ -98,6 +101,30 @@ TEST_F(HoldRoutesTest, AScanIsEndedByItsSourceOrWhoeverIsInControlAndOutlivesIts
     }
   }
   EXPECT_THAT(scans, testing::ElementsAre("begun", "ended", "begun", "ended"));
+}
+
+TEST_F(HoldRoutesTest, WhatIsHeldOutlivesARestart) {
+  ASSERT_EQ(use_gate(true).status, 200u);
+  ASSERT_EQ(scan(true).status, 200u);
+  const auto kept = [this] {
+    return *mine_.read([](Transaction& transaction) -> Stored<std::optional<Setting>> {
+      return Settings(transaction).find(HoldService::setting);
+    });
+  };
+  while (!kept() || kept()->value["scan"].is_null()) {
+    std::this_thread::yield();
+  }
+  const json before = kept()->value;
+  ASSERT_EQ(scan(false).status, 200u);
+  ASSERT_EQ(use_gate(false).status, 200u);
+  pass(std::chrono::seconds(30));
+  in_network([&] { api_.restore_holds(before); });
+  EXPECT_EQ(gate(), GateState::no_signal);
+  const json shown = json::parse(get("/api/holds").body)["scan"];
+  EXPECT_EQ(shown["age_s"], 30.0);
+  EXPECT_EQ(shown["source"], "edna, session 1");
+  show(test::ready_view());
+  EXPECT_EQ(post("/api/proposals", R"({"slot":3,"target_counts":1000})").problem()["code"], "SCANNING");
 }
 
 TEST_F(HoldRoutesTest, ConsolesLearnOfEachChange) {
