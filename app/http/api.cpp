@@ -117,7 +117,7 @@ void Api::follow_kernel() {
   // Before any answer of the kernel: whoever is answered finds expired what that request expired.
   control_.on_orders = [this] {
     look_after_registration(context_.view());
-    tell_holds();
+    publish_holds();
   };
   control_.on_event = [this](const ilk_event_t& event) {
     json message = event_json(event);
@@ -282,10 +282,10 @@ asio::awaitable<void> Api::keep_holds() {
 }
 
 /** Whenever something changed but the age of a scan. */
-void Api::tell_holds() {
+void Api::publish_holds() {
   json now = holds_.to_json();
-  if (now != told_holds_) {
-    told_holds_ = std::move(now);
+  if (now != published_holds_) {
+    published_holds_ = std::move(now);
     json message = holds_.to_json(context_.steady_clock());
     message["type"] = "holds";
     stream_.send_text(message);
@@ -363,7 +363,7 @@ asio::awaitable<void> Api::broadcast() {
           encode_state(seen, context_.config, open_targets(context_.robot, registry_), steady_clock::now()));
     }
     tell_biopsy(seen);
-    tell_holds();
+    publish_holds();
     look_after_pedal(seen);
     look_after_registration(seen);
     look_after_sessions();

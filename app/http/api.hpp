@@ -89,7 +89,7 @@ class Api {
   void follow_streams();
   void note_refusal(const Request& request, const Caller& caller, const Problem& problem);
   void tell_biopsy(const ControlView& seen);
-  void tell_holds();
+  void publish_holds();
   boost::asio::awaitable<void> keep_holds();
   void look_after_pedal(const ControlView& seen);
   void look_after_registration(const ControlView& seen);
@@ -104,7 +104,7 @@ class Api {
   Bench bench_;
   BiopsyService biopsy_;
   HoldService holds_{control_};
-  nlohmann::json told_holds_;
+  nlohmann::json published_holds_;
   nlohmann::json kept_holds_ = holds_.kept(); /**< as the store has it, or soon will */
   LiveSessions sessions_;
   MotionControl motion_control_;

@@ -177,3 +177,15 @@ def test_a_program_may_close_the_gate_and_only_the_controller_open_it(robot: Sta
     wait_until("open", is_open)
     navigator.stop()
     wait_until("closed", lambda: holds(robot)["gate"]["state"] == "no_signal")
+
+
+@pytest.mark.parametrize("dialect", ["brp2013", "wpi2024"])
+def test_every_dialect_takes_what_holds_still(stack: StackFactory, dialect: str) -> None:
+    robot = stack(igtl=True, dialect=dialect)
+    navigator = Navigator(robot.igtl_port)
+    assert navigator.ask(text("SCAN", "on")).code == OK
+    assert holds(robot)["scan"]["active"]
+    assert navigator.ask(text("BREATHING_GATE", "hold")).code == OK
+    assert navigator.ask(text("SCAN", "off")).code == OK
+    assert not holds(robot)["scan"]["active"]
+    navigator.stop()
