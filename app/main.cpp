@@ -41,6 +41,7 @@
 #include "store/audit.hpp"
 #include "store/first_admin.hpp"
 #include "store/noted_heads.hpp"
+#include "store/settings.hpp"
 #include "store/store.hpp"
 #include "store/store_backup.hpp"
 #include "system/capabilities.hpp"
@@ -287,6 +288,12 @@ Stored<std::int64_t> read_newest_proposal(Store& store) {
   });
 }
 
+Stored<std::optional<Setting>> read_holds(Store& store) {
+  return store.read([](Transaction& transaction) -> Stored<std::optional<Setting>> {
+    return Settings(transaction).find(HoldService::setting);
+  });
+}
+
 /** Has the recorder note the head of the audit, soon after it has changed. */
 boost::asio::awaitable<void> report_heads(StoreExecutor& store_executor, const std::string& recorder) {
   boost::asio::steady_timer timer(co_await boost::asio::this_coro::executor);
@@ -339,6 +346,9 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
     // Each proposal is preceded by a record of its own, so none of an earlier run has a number beyond the
     // last.
     api.registry().number_after(static_cast<std::uint32_t>(*newest));
+  }
+  if (const auto kept = read_holds(store); kept && *kept && !options.replay) {
+    api.restore_holds((*kept)->value);
   }
   web::Server server(door.get_executor(), executor, api, *channel,
                      web::StaticFiles(options.web_directory, options.docs_directory));

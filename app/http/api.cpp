@@ -10,6 +10,7 @@
 #include "service/reply.hpp"
 #include "service/status_json.hpp"
 #include "service/targeting_store.hpp"
+#include "store/settings.hpp"
 #include "system/as_result.hpp"
 #include "system/launch.hpp"
 
@@ -56,6 +57,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
                registry_,
                bench_,
                biopsy_,
+               holds_,
                store,
                sessions_,
                motion_control_,
@@ -113,7 +115,10 @@ void Api::follow_proposals() {
 
 void Api::follow_kernel() {
   // Before any answer of the kernel: whoever is answered finds expired what that request expired.
-  control_.on_orders = [this] { look_after_registration(context_.view()); };
+  control_.on_orders = [this] {
+    look_after_registration(context_.view());
+    publish_holds();
+  };
   control_.on_event = [this](const ilk_event_t& event) {
     json message = event_json(event);
     spdlog::info("kernel: {}", message.dump());
@@ -152,6 +157,7 @@ void Api::follow_streams() {
 void Api::follow_sessions() {
   sessions_.on_end([this](std::uint32_t session) {
     motion_control_.release(session);
+    holds_.end_source({.session = session});
     stream_.end_session(session);
     if (bench_.held_by(session)) {
       std::string why = "Session " + std::to_string(session) + ", which pressed it, has ended.";
@@ -258,6 +264,38 @@ void Api::tell_biopsy(const ControlView& seen) {
   stream_.send_text(message);
 }
 
+void Api::restore_holds(const json& kept) {
+  context_.restore_holds(kept);
+  kept_holds_ = kept;
+}
+
+asio::awaitable<void> Api::keep_holds() {
+  auto work = [kept = kept_holds_, now = context_.clock()](Store& store) {
+    return store.transact([&](Transaction& transaction) -> Stored<void> {
+      Settings(transaction).set(HoldService::setting, kept, now);
+      return {};
+    });
+  };
+  if (const auto stored = co_await context_.store.run(std::move(work)); !stored) {
+    spdlog::error("a restart of the app would forget what is held still: {}", stored.error().detail);
+  }
+}
+
+/** Whenever something changed but the age of a scan. */
+void Api::publish_holds() {
+  json now = holds_.to_json();
+  if (now != published_holds_) {
+    published_holds_ = std::move(now);
+    json message = holds_.to_json(context_.steady_clock());
+    message["type"] = "holds";
+    stream_.send_text(message);
+  }
+  if (json kept = holds_.kept(); kept != kept_holds_) {
+    kept_holds_ = std::move(kept);
+    launch(context_.executor, keep_holds());
+  }
+}
+
 void Api::look_after_pedal(const ControlView& seen) {
   if (bench_.overdue(seen)) {
     spdlog::warn("the bench pedal was not renewed for 500 ms: released");
@@ -325,6 +363,7 @@ asio::awaitable<void> Api::broadcast() {
           encode_state(seen, context_.config, open_targets(context_.robot, registry_), steady_clock::now()));
     }
     tell_biopsy(seen);
+    publish_holds();
     look_after_pedal(seen);
     look_after_registration(seen);
     look_after_sessions();

@@ -53,6 +53,9 @@ class Api {
   /** Has the check of the audit compare the heads that the recorder noted in that file. */
   void compare_with(std::filesystem::path noted_heads) { context_.noted_heads = std::move(noted_heads); }
 
+  /** Holds what was held when the app ended (`HoldService::kept`). */
+  void restore_holds(const nlohmann::json& kept);
+
   /** Ends every proposal, and records by whom the robot was stopped. */
   boost::asio::awaitable<void> record_stop(StopMade made);
 
@@ -86,6 +89,8 @@ class Api {
   void follow_streams();
   void note_refusal(const Request& request, const Caller& caller, const Problem& problem);
   void tell_biopsy(const ControlView& seen);
+  void publish_holds();
+  boost::asio::awaitable<void> keep_holds();
   void look_after_pedal(const ControlView& seen);
   void look_after_registration(const ControlView& seen);
   boost::asio::awaitable<void> expire_registration(std::string reason);
@@ -98,6 +103,9 @@ class Api {
   LogTail log_tail_;
   Bench bench_;
   BiopsyService biopsy_;
+  HoldService holds_{control_};
+  nlohmann::json published_holds_;
+  nlohmann::json kept_holds_ = holds_.kept(); /**< as the store has it, or soon will */
   LiveSessions sessions_;
   MotionControl motion_control_;
   WorkPool work_;
@@ -115,6 +123,7 @@ class Api {
   PositionRoutes position_routes_{context_, router_}; /**< before the axes, whose pattern its paths match */
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
+  HoldRoutes hold_routes_{context_, router_};
   JogRoutes jog_routes_{context_, router_};
   BenchRoutes bench_routes_{context_, router_};
   BiopsyRoutes biopsy_routes_{context_, router_};

@@ -166,6 +166,21 @@ class HistoryRoutes {
   History history_;
 };
 
+/** Routes of what holds motion still: the breathing gate, and a scan. */
+class HoldRoutes {
+ public:
+  /** Both must outlive it. */
+  HoldRoutes(const Context& context, Router& router);
+
+ private:
+  [[nodiscard]] Reply show() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> use_gate(const Call& call) const;
+  [[nodiscard]] Reply signal(const Call& call) const;
+  [[nodiscard]] boost::asio::awaitable<Reply> set_scan(const Call& call) const;
+
+  const Context& context_;
+};
+
 /** Routes of jogging: a move towards one end of an axis' range, held by renewals. */
 class JogRoutes {
  public:

@@ -7,6 +7,7 @@
  */
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 #include <vector>
 
 #include "igtl/message.hpp"
+#include "motion/outside_holds.hpp"
 
 namespace interlock::igtl {
 
@@ -107,6 +109,20 @@ struct TipPose {
 
 /** A word of an imager, for people to see. */
 using ImagerWord = std::variant<ImagerStatus, TipPose>;
+
+/** What a breathing gate says, and for how long. */
+struct GateSignal {
+  bool open = false; /**< the insertion may advance */
+  std::chrono::milliseconds validity{0};
+};
+
+/** A scan begins, or has ended. */
+struct ScanState {
+  bool active = false;
+};
+
+/** What holds motion still; any program may say it. */
+using HoldMessage = std::variant<GateSignal, ScanState>;
 
 /** Heard and noted, and nothing follows. */
 struct Noted {

@@ -1,6 +1,7 @@
 #include "igtl/dialect.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 namespace interlock::igtl {
 namespace {
@@ -10,7 +11,48 @@ Capability capabilities() {
            "STT_TDATA", "STP_TDATA"}};
 }
 
+/** In ms behind the word, or the usual validity where nothing follows it. */
+std::optional<std::chrono::milliseconds> validity_in(std::string_view behind) {
+  if (behind.empty()) {
+    return usual_gate_signal;
+  }
+  std::int64_t ms = 0;
+  const char* const end = behind.data() + behind.size();
+  const auto [stopped, error] = std::from_chars(behind.data() + 1, end, ms);
+  const std::chrono::milliseconds validity(ms);
+  const bool is_valid = behind.front() == ' ' && error == std::errc() && stopped == end &&
+                        validity >= shortest_gate_signal && validity <= longest_gate_signal;
+  return is_valid ? std::optional(validity) : std::nullopt;
+}
+
+std::optional<HoldMessage> hold_in(bool is_scan, std::string_view text) {
+  if (is_scan) {
+    const bool is_known = text == "on" || text == "off";
+    return is_known ? std::optional<HoldMessage>(ScanState{text == "on"}) : std::nullopt;
+  }
+  const std::string_view word = text.substr(0, text.find(' '));
+  const auto validity = validity_in(text.substr(word.size()));
+  const bool is_known = validity && (word == "open" || word == "hold");
+  return is_known ? std::optional<HoldMessage>(GateSignal{word == "open", *validity}) : std::nullopt;
+}
+
 }  // namespace
+
+std::optional<tl::expected<HoldMessage, Unwanted>> read_hold(const Message& message) {
+  const auto* text = std::get_if<Text>(&message.body);
+  const std::string name = lower(message.device);
+  const bool is_scan = name == "scan";
+  if (text == nullptr || !(is_scan || name == "breathing_gate")) {
+    return std::nullopt;
+  }
+  if (auto hold = hold_in(is_scan, lower(text->text))) {
+    return std::move(*hold);
+  }
+  return unwanted(
+      StatusCode::configuration,
+      message.device + " is \"" + text->text + "\"; expected " +
+          (is_scan ? "on or off." : "open or hold, and the ms for which it is valid: 50 to 2000."));
+}
 
 std::optional<StopName> stop_name(std::string_view device) {
   const std::string name = lower(device);

@@ -90,6 +90,10 @@ bool may_ask_to_stop(std::string_view device);
 /** Whether it stops the robot in some dialect, by its name or by its text. */
 bool asks_to_stop(const Message& message);
 
+/** What a STRING says that is named BREATHING_GATE, in upper or lower case ("hold", "open", or "open 300":
+ * valid for so many ms), or SCAN ("on", "off"), in every dialect; nothing of any other message. */
+std::optional<tl::expected<HoldMessage, Unwanted>> read_hold(const Message& message);
+
 /** Names and order of messages: what a message asks for, and how state and answers are told. */
 class Dialect {
  public:

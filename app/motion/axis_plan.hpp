@@ -95,6 +95,7 @@ struct RobotPlan {
   std::uint32_t lease_max_ticks = 0;
   std::vector<HomeStepPlan> home_steps;
   std::optional<NeedlePlan> needle;
+  std::optional<std::uint32_t> insertion_slot; /**< of what goes into the patient: deeper at more counts */
 
   RobotPlan(const Robot& robot, const ilk_config_t& config)
       : period_us(config.common.period_us),
@@ -102,6 +103,7 @@ struct RobotPlan {
         home_steps(robot.home_steps.begin(), robot.home_steps.end()) {
     const Axis* insertion = robot.with_role("insertion");
     const Axis* rotation = robot.with_role("rotation");
+    insertion_slot = insertion == nullptr ? std::nullopt : std::optional(insertion->slot);
     if (robot.biopsy && insertion != nullptr && rotation != nullptr) {
       const Biopsy& biopsy = *robot.biopsy;
       needle = NeedlePlan{

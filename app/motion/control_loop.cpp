@@ -126,6 +126,7 @@ void ControlLoop::control() noexcept {
   watch_service();
   obey_stop();
   obey_pause();
+  obey_holds();
   read_events();
   send_heartbeat();
   take_commands();
@@ -190,6 +191,16 @@ void ControlLoop::obey_pause() noexcept {
   if (pauses != pauses_sent_ && port_.send(request_of(ILK_REQUEST_STOP), HeartbeatOrigin{})) {
     pauses_sent_ = pauses;
   }
+}
+
+/** A signal's age is judged here, in each tick. */
+void ControlLoop::obey_holds() noexcept {
+  const OutsideHolds& holds = channel_.holds.newest();
+  const GateState gate = holds.gate.at(view_.moment(view_.received));
+  noticed_ = noticed_ || gate != view_.gate || holds.scanning != view_.scanning;
+  view_.gate = gate;
+  view_.scanning = holds.scanning;
+  modes_.hold({holds.scanning, gate != GateState::off && gate != GateState::open});
 }
 
 void ControlLoop::read_events() noexcept {

@@ -55,6 +55,7 @@ class ControlLoop {
   void watch_service() noexcept;
   void obey_stop() noexcept;
   void obey_pause() noexcept;
+  void obey_holds() noexcept;
   void read_events() noexcept;
   void dispatch_verdict(const ilk_event_t& event) noexcept;
   void send_heartbeat() noexcept;

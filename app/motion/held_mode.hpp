@@ -59,6 +59,8 @@ class HeldMode : public Mode {
   /** It was carried out. */
   void finish(TaskReason reason, std::uint32_t tick) noexcept { set_phase(TaskPhase::done, reason, 0, tick); }
   void set_step(std::uint32_t step) noexcept { status_.step = step; }
+  /** While it executes: what it waits for under the held pedal, or `none`. */
+  void wait_for(TaskReason reason) noexcept { status_.reason = executes() ? reason : status_.reason; }
 
   /** The work of the newest task. */
   template <typename Kind>

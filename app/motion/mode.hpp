@@ -73,6 +73,9 @@ class Mode {
    * out, and each renewal has a verdict of its own. */
   virtual void on_verdict_lost(const ModeOrigin& /*origin*/, std::uint32_t /*tick*/) noexcept {}
 
+  /** Whether the insertion may not advance now: it waits, without an end of its task, until it may. */
+  virtual void hold_insertion(bool /*held*/) noexcept {}
+
   /** Whether a task is open here. */
   [[nodiscard]] virtual bool is_open() const noexcept = 0;
 

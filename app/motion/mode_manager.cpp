@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "motion/realtime_channel.hpp"
+
 namespace interlock {
 
 namespace {
@@ -81,12 +83,24 @@ KernelRequests ModeManager::tick(const ilk_snapshot_t& snapshot) noexcept {
       end_axis(slot, TaskReason::linkage_strained, snapshot.state.system.tick);
     }
   }
-  pedal_held_ = snapshot.state.system.mode == ILK_MODE_MOTION;
   KernelRequests requests;
+  seen_ = snapshot;
+  if (still_.all && snapshot.state.system.mode == ILK_MODE_MOTION) {
+    requests.add({{ILK_REQUEST_STOP, 0, 0}});
+    seen_.state.system.mode = ILK_MODE_READY;
+  }
+  pedal_held_ = seen_.state.system.mode == ILK_MODE_MOTION;
   for (const auto& mode : modes_) {
-    mode->tick(snapshot, requests);
+    mode->tick(seen_, requests);
   }
   return requests;
+}
+
+void ModeManager::hold(StandStill still) noexcept {
+  still_ = still;
+  for (const auto& mode : modes_) {
+    mode->hold_insertion(still.insertion);
+  }
 }
 
 void ModeManager::see(const SeenImage& seen) noexcept {
@@ -98,6 +112,12 @@ void ModeManager::see(const SeenImage& seen) noexcept {
 void ModeManager::report(ControlView& view) const noexcept {
   for (const auto& mode : modes_) {
     mode->report(view);
+  }
+  for (TaskStatus& status : view.tasks) {
+    const bool waits = status.phase == TaskPhase::waiting || status.phase == TaskPhase::paused;
+    if (still_.all && waits && status.reason != TaskReason::unconfirmed) {
+      status.reason = TaskReason::scanning;
+    }
   }
 }
 

@@ -11,6 +11,7 @@
 
 #include "motion/linkage_watch.hpp"
 #include "motion/mode.hpp"
+#include "motion/outside_holds.hpp"
 
 namespace interlock {
 
@@ -40,6 +41,10 @@ class ModeManager {
   /** Ends every open task for that reason. */
   void end_all(TaskReason reason, std::uint32_t tick) noexcept;
 
+  /** What stands still from the next tick on. Everything: MOTION is ended, and the modes see a pedal that is
+   * not held. */
+  void hold(StandStill still) noexcept;
+
   /** The requests to send in this tick, first one first. */
   [[nodiscard]] KernelRequests tick(const ilk_snapshot_t& snapshot) noexcept;
 
@@ -63,7 +68,9 @@ class ModeManager {
   /** Homing last: the others give back their leases before it asks for their axes. */
   const Modes modes_;
   LinkageWatch linkages_;
-  bool pedal_held_ = false; /**< in the newest tick */
+  StandStill still_;
+  ilk_snapshot_t seen_{};   /**< by the modes, in the newest tick */
+  bool pedal_held_ = false; /**< as they see it */
 };
 
 }  // namespace interlock

@@ -20,6 +20,7 @@
 #include "interlock/sim_bus.h"
 #include "motion/biopsy_run.hpp"
 #include "motion/force_watch.hpp"
+#include "motion/outside_holds.hpp"
 #include "motion/task.hpp"
 #include "system/file_descriptor.hpp"
 
@@ -145,6 +146,8 @@ struct ControlView {
   BiopsyFindings biopsy;
   BiopsyNow biopsy_now;
   ForceReadings force; /**< of a robot with a needle */
+  GateState gate = GateState::off;
+  bool scanning = false; /**< everything is held still for a scan */
 
   /** This moment, by the clock that holds run on: the kernel's if that is simulated. */
   [[nodiscard]] Moment moment(std::chrono::steady_clock::time_point now) const noexcept {
@@ -161,6 +164,7 @@ struct RealtimeChannel {
   boost::lockfree::spsc_queue<Command, boost::lockfree::capacity<command_capacity>> commands;
   boost::lockfree::spsc_queue<Notice, boost::lockfree::capacity<notice_capacity>> notices;
   TripleBuffer<ControlView> view;
+  TripleBuffer<OutsideHolds> holds;    /**< written by the network thread */
   std::atomic<std::uint32_t> stops{0}; /**< STOPs asked for since start */
   /** Count on for as long as people are served, by the network's thread and by that of its door: once one
    * stands still, motion ends. 0: not yet. */

@@ -214,6 +214,8 @@ enum class TaskReason : std::uint8_t {
   press_again,     /**< waits for a release and a press: the travel that one press allows is used up, or the
                       pedal was held when the motion was approved */
   unconfirmed,     /**< waits for a `Confirmation` */
+  breathing,       /**< the insertion waits for the breathing gate to open */
+  scanning,        /**< waits for the end of a scan */
   not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
   verdict_lost,    /**< the kernel's answer to a HOME got lost */
   control_changed,
@@ -274,6 +276,8 @@ class TaskTable {
     return TaskTable(*this).of(typeid(Kind));
   }
 
+  [[nodiscard]] auto begin() noexcept { return all_.begin(); }
+  [[nodiscard]] auto end() noexcept { return all_.end(); }
   [[nodiscard]] auto begin() const noexcept { return all_.begin(); }
   [[nodiscard]] auto end() const noexcept { return all_.end(); }
   bool operator==(const TaskTable&) const = default;

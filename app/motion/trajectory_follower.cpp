@@ -105,8 +105,28 @@ const TrajectoryFollower::Points& TrajectoryFollower::points() noexcept {
   return points_;
 }
 
+// At the rate p a path with velocity v and acceleration a has the acceleration a p^2 + v p'.
+TrajectoryFollower::RateChange TrajectoryFollower::rate_change() const noexcept {
+  constexpr double at_once_per_s = 1e6;
+  RateChange change{-at_once_per_s, at_once_per_s};
+  const std::uint32_t moved = mask();
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    const MotionState& path = unscaled_[slot];
+    if (((moved >> slot) & 1u) == 0 || path.velocity == 0.0) {
+      continue;
+    }
+    const double speed = std::abs(path.velocity);
+    const double limit = plan_.axis[slot].rates.in_units(plan_.axis[slot].counts_per_unit).acceleration;
+    const double along = std::copysign(1.0, path.velocity) * path.acceleration * rate_ * rate_;
+    change.least_per_s = std::max(change.least_per_s, std::min(0.0, (-limit - along) / speed));
+    change.greatest_per_s = std::min(change.greatest_per_s, std::max(0.0, (limit - along) / speed));
+  }
+  return change;
+}
+
 /** As the clock sees it. */
-Setpoint TrajectoryFollower::in_counts(const MotionState& state, std::uint32_t slot) const noexcept {
+Setpoint TrajectoryFollower::in_counts(const MotionState& state, std::uint32_t slot) noexcept {
+  unscaled_[slot] = state;
   const double counts_per_unit = plan_.axis[slot].counts_per_unit;
   return {state.position * counts_per_unit, state.velocity * counts_per_unit * rate_,
           state.acceleration * counts_per_unit * rate_ * rate_};

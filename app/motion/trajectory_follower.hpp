@@ -52,6 +52,16 @@ class TrajectoryFollower {
   /** Where each axis of the leg should be now, by slot; the points of others mean nothing. */
   [[nodiscard]] const Points& points() noexcept;
 
+  /** How fast the rate may change now, 1/s. */
+  struct RateChange {
+    double least_per_s = 0.0;    /**< 0 or less */
+    double greatest_per_s = 0.0; /**< 0 or more */
+  };
+
+  /** Within which no axis of the leg exceeds its acceleration, at the `points` as they were last asked for;
+   * as good as at once while they rest. */
+  [[nodiscard]] RateChange rate_change() const noexcept;
+
   /** Whether the approach, or the trajectory, has come to its end; the axes may lag behind. */
   [[nodiscard]] bool at_end() const noexcept;
 
@@ -74,7 +84,7 @@ class TrajectoryFollower {
   [[nodiscard]] const TimedTrajectory* trajectory() const noexcept;
   void approach(const MotionState& now_counts, std::uint32_t slot, double target_counts) noexcept;
   void begin_trajectory(const TimedTrajectory& timed) noexcept;
-  [[nodiscard]] Setpoint in_counts(const MotionState& state, std::uint32_t slot) const noexcept;
+  [[nodiscard]] Setpoint in_counts(const MotionState& state, std::uint32_t slot) noexcept;
   void point_along_approach() noexcept;
   void point_along_trajectory(const TimedTrajectory& trajectory) noexcept;
 
@@ -92,6 +102,7 @@ class TrajectoryFollower {
   double begun_s_ = 0.0;      /**< that at which its stage began */
   TimeScaling pace_;          /**< of the trajectory's time, from rest to rest */
   Points points_{};
+  std::array<MotionState, ILK_SLOTS> unscaled_{}; /**< of the points at the rate 1, in the axes' units */
 };
 
 }  // namespace interlock

@@ -47,7 +47,9 @@ tl::expected<Proposal, Refusal> MotionRegistry::propose(Task task, const Control
     return tl::make_unexpected(checked.error());
   }
   if (approves(proposal)) {
-    return approve(proposal, asked);
+    return check_still()
+        .map_error([&](const Refusal& refusal) { return refuse(proposal, refusal); })
+        .and_then([&] { return approve(proposal, asked); });
   }
   become(proposal, ProposalState::checked, "Every check passed. Waits for somebody to approve it.");
   return proposal;
@@ -105,6 +107,14 @@ tl::expected<void, Refusal> MotionRegistry::check_alone() const {
   return {};
 }
 
+tl::expected<void, Refusal> MotionRegistry::check_still() const {
+  if (scanning_) {
+    return tl::make_unexpected(Refusal{"SCANNING", "The robot is held still for a scan.", "no scan",
+                                       "Wait for its end, or end it in the console; then ask again."});
+  }
+  return {};
+}
+
 std::vector<AxisCounts> MotionRegistry::headed() const {
   std::vector<AxisCounts> targets;
   for (const Proposal& each : registry_) {
@@ -146,6 +156,9 @@ tl::expected<Proposal*, Refusal> MotionRegistry::waiting(std::uint32_t id) {
 tl::expected<Proposal, Refusal> MotionRegistry::approve(std::uint32_t id, const ControlView& view,
                                                         std::chrono::steady_clock::time_point asked) {
   discard_waiting(view);
+  if (const auto still = check_still(); !still) {
+    return tl::make_unexpected(still.error());
+  }
   return waiting(id).and_then([&](Proposal* proposal) {
     // One axis goes straight to where it comes to rest, and homing to the switches, from wherever it is.
     const bool has_way = proposal->ends.size() > 1;
@@ -178,6 +191,9 @@ std::vector<AxisCounts> MotionRegistry::places(const Proposal& proposal) {
 tl::expected<Proposal, Refusal> MotionRegistry::confirm(std::uint32_t id, const ControlView& view,
                                                         std::chrono::steady_clock::time_point asked) {
   follow(view);
+  if (const auto still = check_still(); !still) {
+    return tl::make_unexpected(still.error());
+  }
   Proposal* proposal = find_mutable(id);
   if (proposal == nullptr || !proposal->wants_confirmation) {
     return tl::make_unexpected(

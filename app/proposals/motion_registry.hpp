@@ -86,6 +86,9 @@ class MotionRegistry {
    * waits. */
   tl::expected<Proposal, Refusal> reject(std::uint32_t id, const std::string& by);
 
+  /** For as long as a scan goes on nothing is approved or confirmed: SCANNING. */
+  void hold_still(bool scanning) { scanning_ = scanning; }
+
   /** Counts the changes of registration, probe and target. */
   [[nodiscard]] std::uint32_t targeting_revision() const { return targeting_revision_; }
 
@@ -149,6 +152,7 @@ class MotionRegistry {
   tl::expected<void, Refusal> check(Proposal& proposal, const ControlView& view);
   tl::expected<Proposal*, Refusal> waiting(std::uint32_t id);
   [[nodiscard]] bool approves(const Proposal& proposal) const;
+  [[nodiscard]] tl::expected<void, Refusal> check_still() const;
   void forget_one();
   void replace_open(const Proposal& by);
   Refusal refuse(Proposal& proposal, Refusal refusal);
@@ -174,6 +178,7 @@ class MotionRegistry {
   std::string pause_reason_;            /**< of the pause to come, or that lasts */
   std::uint32_t targeting_revision_ = 0;
   std::int64_t case_ = 0; /**< number of the open one */
+  bool scanning_ = false;
   std::uint32_t last_id_ = 0;
 };
 

@@ -22,6 +22,8 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
     case TaskReason::pedal_released:
     case TaskReason::press_again:
     case TaskReason::unconfirmed:
+    case TaskReason::breathing:
+    case TaskReason::scanning:
     case TaskReason::swept:
     case TaskReason::steering_failed:
       return "";
@@ -162,6 +164,12 @@ ProposalState state_of(TaskPhase phase) noexcept {
 
 std::string detail_of(const Robot& robot, const Proposal& proposal, const TaskStatus& status,
                       const BiopsyFindings& found) {
+  if (is_open(status.phase) && status.reason == TaskReason::breathing) {
+    return "Waits under the held pedal for the breathing gate to open; then it goes on by itself.";
+  }
+  if (is_open(status.phase) && status.reason == TaskReason::scanning) {
+    return "Held still for a scan; once that has ended, release the pedal and press it to go on.";
+  }
   const TaskWords words = kind_of(proposal.task->work).words(robot, proposal, status, found);
   switch (status.phase) {
     case TaskPhase::none:

@@ -107,6 +107,21 @@ void Context::record_stop(const Caller& caller, std::uint32_t unrecorded,
   store.note(std::move(stop));
 }
 
+void Context::begin_scan(const HoldSource& source) const {
+  holds.begin_scan(source, clock(), steady_clock());
+  registry.hold_still(true);
+}
+
+void Context::end_scan() const {
+  holds.end_scan();
+  registry.hold_still(false);
+}
+
+void Context::restore_holds(const nlohmann::json& kept) const {
+  holds.restore(kept, clock(), steady_clock());
+  registry.hold_still(holds.scanning());
+}
+
 void Context::note(std::optional<AuditEntry> entry) const {
   if (entry) {
     store.note(std::move(*entry));

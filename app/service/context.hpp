@@ -17,6 +17,7 @@
 #include "service/biopsy_service.hpp"
 #include "service/clocks.hpp"
 #include "service/control_client.hpp"
+#include "service/hold_service.hpp"
 #include "service/live_sessions.hpp"
 #include "service/loaded_trajectory.hpp"
 #include "service/motion_control.hpp"
@@ -38,6 +39,7 @@ struct Context {
   MotionRegistry& registry;
   Bench& bench;
   BiopsyService& biopsy;
+  HoldService& holds;
   StoreExecutor& store;
   LiveSessions& sessions;
   MotionControl& motion_control;
@@ -77,6 +79,13 @@ struct Context {
    * @param begun the record as it was begun when the STOP came; empty: it came now */
   void record_stop(const Caller& caller, std::uint32_t unrecorded,
                    std::optional<AuditEntry> begun = std::nullopt) const;
+
+  /** Holds everything still for a scan of that source: nothing is approved until it is over. */
+  void begin_scan(const HoldSource& source) const;
+  /** The scan is over. */
+  void end_scan() const;
+  /** Holds what was held when the app ended. */
+  void restore_holds(const nlohmann::json& kept) const;
 
   /** Has the record written that is due, if one is. */
   void note(std::optional<AuditEntry> entry) const;

@@ -41,6 +41,12 @@ class ControlClient {
    * when the queue is full. */
   bool send(Command command);
 
+  /** What holds motion still from outside, in place of what was set before. */
+  void set_holds(const OutsideHolds& holds) {
+    channel_.holds.writing() = holds;
+    channel_.holds.publish();
+  }
+
   /** Sends one request to the kernel, a RESTORE with its position; empty when no verdict came within a
    * second, without verdict when a STOP overtook it.
    */

@@ -89,7 +89,57 @@ void Navigation::note_refusal(PeerId peer, const std::string& device, const std:
 }
 
 void Navigation::take(PeerId peer, const igtl::Message& message) {
+  if (const auto hold = igtl::read_hold(message)) {
+    igtl::Status status;
+    if (!*hold) {
+      status = {hold->error().code, 0, "UNWANTED", hold->error().reason};
+    } else if (auto done = obey(peer, **hold)) {
+      status = {StatusCode::ok, 0, "OK", std::move(*done)};
+    } else {
+      status = status_of(done.error());
+    }
+    if (status.code != StatusCode::ok) {
+      note_refusal(peer, message.device, status.text);
+    }
+    server_.reply(peer, message.device, status);
+    return;
+  }
   react(peer, message.device, sessions_.at(peer).dialect->take(message, state(), grant_of(peer).has_value()));
+}
+
+HoldSource Navigation::source_of(PeerId peer) const {
+  const auto sender = server_.find(peer);
+  return {.peer = peer, .name = "OpenIGTLink " + (sender ? sender->address : std::to_string(peer))};
+}
+
+/** At once, and whoever says so, where that holds motion back: the gate is opened by the controller alone,
+ * and a scan is ended by it or by its source. */
+tl::expected<std::string, Problem> Navigation::obey(PeerId peer, const igtl::HoldMessage& message) {
+  const HoldSource source = source_of(peer);
+  const auto grant = grant_of(peer);
+  if (const auto* signal = std::get_if<igtl::GateSignal>(&message)) {
+    if (signal->open && !grant) {
+      return fail(grant.error());
+    }
+    const std::string noted =
+        context_.holds.gate_in_use() ? "Taken." : "Taken; the breathing gate is not in use.";
+    return context_.holds.signal(source, *signal, std::chrono::steady_clock::now()).map([&] {
+      return noted;
+    });
+  }
+  const bool active = std::get<igtl::ScanState>(message).active;
+  if (!active) {
+    if (const auto may = context_.holds.may_end_scan(source, grant.has_value()); !may) {
+      return fail(may.error());
+    }
+  }
+  if (active == context_.holds.scanning()) {
+    return active ? "A scan goes on already." : "No scan goes on.";
+  }
+  active ? context_.begin_scan(source) : context_.end_scan();
+  json detail{{"scan", active ? "begun" : "ended"}, {"client", source.name}};
+  context_.store.note(context_.entry(grant.value_or(Caller{}), AuditKind::setting, std::move(detail)));
+  return active ? "Everything is held still." : "Motion may be approved again.";
 }
 
 /** A STOP goes out before anything is said of it. */
@@ -187,6 +237,7 @@ void Navigation::track(PeerId peer, const igtl::Track& command) {
  * pedal anew. What the program had asked for goes on only until another one takes its place. */
 void Navigation::lose(const igtl::Peer& peer, const std::string& reason) {
   announce("closed", peer, reason);
+  context_.holds.end_source({.peer = peer.id});
   sessions_.erase(peer.id);
   std::erase_if(tasks_, [&](const WaitingCommand& task) { return task.peer == peer.id; });
   if (!grant_ || grant_->peer != peer.id) {

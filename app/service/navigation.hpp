@@ -110,6 +110,8 @@ class Navigation {
   void listen_to_server();
   void take(igtl::PeerId peer, const igtl::Message& message);
   void react(igtl::PeerId peer, const std::string& device, igtl::Reaction reaction);
+  [[nodiscard]] tl::expected<std::string, Problem> obey(igtl::PeerId peer, const igtl::HoldMessage& message);
+  [[nodiscard]] HoldSource source_of(igtl::PeerId peer) const;
   void enqueue(igtl::PeerId peer, const std::string& device, igtl::Command command);
   void finish(igtl::PeerId peer, const std::string& device, const igtl::Command& command,
               const igtl::Outcome& outcome);

@@ -196,8 +196,10 @@ bool BiopsyMode::push(const ilk_snapshot_t& snapshot, double time_s) noexcept {
   if (!desired) {
     return fails(desired.error(), snapshot.state.system.tick);
   }
+  const bool waits = insertion_held_ && *desired > 0.0;
+  wait_for(waits ? TaskReason::breathing : TaskReason::none);
   const double before_mm = insertion_.position;
-  insertion_.go(*desired, time_s);
+  insertion_.go(waits ? 0.0 : *desired, time_s);
   insertion_.position = std::min(insertion_.position, std::max(before_mm, end_mm));
   return true;
 }

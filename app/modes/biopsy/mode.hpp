@@ -32,6 +32,7 @@ class BiopsyMode final : public HeldMode {
 
   /** An image of tip and target; one that cannot be is counted and changes nothing. */
   void see(const SeenImage& seen) noexcept override;
+  void hold_insertion(bool held) noexcept override { insertion_held_ = held; }
   void report(ControlView& view) const noexcept override;
 
   void tick(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
@@ -83,7 +84,8 @@ class BiopsyMode final : public HeldMode {
   SteeringCommand command_;
   double deepest_allowed_mm_ = 0.0; /**< position of the insertion */
   double cue_mm_ = 0.0;
-  bool let_go_ = false;            /**< the hand has, since the press */
+  bool let_go_ = false; /**< the hand has, since the press */
+  bool insertion_held_ = false;
   std::uint32_t seen_tick_ = 0;    /**< of the snapshot before, while executing */
   std::uint32_t steered_tick_ = 0; /**< of the newest plan */
 };

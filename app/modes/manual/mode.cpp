@@ -8,7 +8,7 @@
 namespace interlock {
 
 ManualMode::ManualMode(const RobotPlan& plan) noexcept
-    : Mode(typeid(MoveTask)), timeout_ticks_(plan.timeout_ticks()) {
+    : Mode(typeid(MoveTask)), timeout_ticks_(plan.timeout_ticks()), insertion_slot_(plan.insertion_slot) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     jobs_[slot].move = AxisMove(slot, plan.axis[slot], plan.lease_ticks());
   }
@@ -30,6 +30,7 @@ void ManualMode::take(const TaskReference& task, std::uint32_t tick) noexcept {
   }
   Job& job = jobs_[move.slot];
   job.move.aim(move.target_counts, move.drive.value_or(0));
+  job.target_counts = move.target_counts;
   job.idle_since = tick;
   moves_[move.slot] = TaskStatus{task->id, TaskPhase::waiting, TaskReason::none, 0, tick, move.slot};
 }
@@ -85,7 +86,7 @@ void ManualMode::judge(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexc
     set_phase(slot, TaskPhase::aborted, blocking->reason, blocking->code, now);
   } else if (snapshot.state.axis[slot].state == ILK_AXIS_HOMING) {
     set_phase(slot, TaskPhase::aborted, TaskReason::axis_homing, 0, now);
-  } else if (snapshot.state.system.mode == ILK_MODE_MOTION) {
+  } else if (snapshot.state.system.mode == ILK_MODE_MOTION && !waits_for_breath(slot, snapshot)) {
     follow(slot, snapshot);
   } else {
     pause_or_expire(slot, snapshot);
@@ -96,14 +97,26 @@ bool ManualMode::waited_too_long(std::uint32_t slot, std::uint32_t tick) const n
   return tick - jobs_[slot].idle_since > timeout_ticks_;
 }
 
+/** A single axis has no path along which it could slow down: it stops as by the release of the pedal. */
+bool ManualMode::waits_for_breath(std::uint32_t slot, const ilk_snapshot_t& snapshot) const noexcept {
+  return insertion_held_ && slot == insertion_slot_ &&
+         jobs_[slot].target_counts > snapshot.state.axis[slot].position_counts;
+}
+
 void ManualMode::pause_or_expire(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
-  if (moves_[slot].phase == TaskPhase::executing) {
-    set_phase(slot, TaskPhase::paused, TaskReason::pedal_released, 0, now);
+  const bool was_executing = moves_[slot].phase == TaskPhase::executing;
+  if (was_executing) {
+    set_phase(slot, TaskPhase::paused, TaskReason::none, 0, now);
     jobs_[slot].idle_since = now;
   } else if (waited_too_long(slot, now)) {
     set_phase(slot, TaskPhase::expired, TaskReason::waited_too_long, 0, now);
+    return;
   }
+  const bool released = moves_[slot].phase == TaskPhase::paused;
+  moves_[slot].reason = snapshot.state.system.mode == ILK_MODE_MOTION ? TaskReason::breathing
+                        : released                                    ? TaskReason::pedal_released
+                                                                      : TaskReason::none;
 }
 
 void ManualMode::follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept {

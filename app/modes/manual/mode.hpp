@@ -8,6 +8,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "motion/axis_move.hpp"
 #include "motion/axis_plan.hpp"
@@ -31,21 +32,26 @@ class ManualMode final : public Mode {
   /** Whether a move of any axis is open. */
   [[nodiscard]] bool is_open() const noexcept override;
   void report(ControlView& view) const noexcept override;
+  void hold_insertion(bool held) noexcept override { insertion_held_ = held; }
 
  private:
   struct Job {
     AxisMove move;
+    std::int32_t target_counts = 0;
     std::uint32_t idle_since = 0; /**< tick since which the task does not execute */
   };
 
   void set_phase(std::uint32_t slot, TaskPhase phase, TaskReason reason, std::uint32_t code,
                  std::uint32_t tick) noexcept;
   void judge(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool waits_for_breath(std::uint32_t slot, const ilk_snapshot_t& snapshot) const noexcept;
   void pause_or_expire(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept;
   void follow(std::uint32_t slot, const ilk_snapshot_t& snapshot) noexcept;
   [[nodiscard]] bool waited_too_long(std::uint32_t slot, std::uint32_t tick) const noexcept;
 
   const std::uint32_t timeout_ticks_;
+  const std::optional<std::uint32_t> insertion_slot_;
+  bool insertion_held_ = false;
   std::array<Job, ILK_SLOTS> jobs_{};
   std::array<TaskStatus, ILK_SLOTS> moves_{};
 };

@@ -26,6 +26,7 @@ PathMode::PathMode(const RobotPlan& plan)
     : HeldMode(typeid(PathTask), plan),
       period_s_(plan.period_s()),
       settle_ticks_(static_cast<std::uint32_t>(settle_s / plan.period_s())),
+      insertion_slot_(plan.insertion_slot),
       walk_(plan) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     trackers_[slot] = AxisTracker(slot, plan.axis[slot], plan.lease_ticks());
@@ -73,7 +74,8 @@ void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
     trackers_[slot].start(snapshot);
   }
   points_ = walk_.points();
-  rate_ = 1.0;
+  lag_rate_ = 1.0;
+  breath_rate_ = 1.0;
   alive_tick_ = now;
   seen_tick_ = now;
   end_tick_ = now;
@@ -94,7 +96,14 @@ void PathMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
   }
 }
 
-/** The time of the path passes as fast as the axis allows that is farthest behind. */
+/** Whether what comes next leads the insertion deeper while it may not advance. */
+bool PathMode::waits_for_breath() const noexcept {
+  return insertion_held_ && insertion_slot_ && leg_moves(*insertion_slot_) &&
+         points_[*insertion_slot_].ahead_counts > points_[*insertion_slot_].now.position_counts;
+}
+
+/** The time of the path passes as fast as the axis allows that is farthest behind, and stands while the
+ * insertion may not advance: it slows down to that, and comes up again, within the axes' accelerations. */
 void PathMode::advance(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
   const double passed_s = (now - seen_tick_) * period_s_;
@@ -106,11 +115,18 @@ void PathMode::advance(const ilk_snapshot_t& snapshot) noexcept {
     }
   }
   const double allowed = std::clamp((longest_lag - lag) / (longest_lag - usual_lag), 0.0, 1.0);
-  rate_ += (allowed - rate_) * std::min(1.0, passed_s / (allowed < rate_ ? slowing_s : recovering_s));
-  walk_.advance(passed_s * rate_, rate_);
+  const double share = std::min(1.0, passed_s / (allowed < lag_rate_ ? slowing_s : recovering_s));
+  lag_rate_ += (allowed - lag_rate_) * share;
+  const bool waits = waits_for_breath();
+  const auto change = walk_.rate_change();
+  breath_rate_ = waits ? std::max(0.0, std::min(breath_rate_, lag_rate_) + change.least_per_s * passed_s)
+                       : std::min(1.0, breath_rate_ + change.greatest_per_s * passed_s);
+  const double rate = std::min(lag_rate_, breath_rate_);
+  walk_.advance(passed_s * rate, rate);
   points_ = walk_.points();
+  wait_for(waits ? TaskReason::breathing : TaskReason::none);
   seen_tick_ = now;
-  alive_tick_ = rate_ > least_rate || walk_.at_end() ? now : alive_tick_;
+  alive_tick_ = waits || rate > least_rate || walk_.at_end() ? now : alive_tick_;
 }
 
 bool PathMode::strays(const ilk_snapshot_t& snapshot) noexcept {

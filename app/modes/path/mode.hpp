@@ -4,9 +4,10 @@
  *
  * Coordinated moves, trajectories and draping all run here. Release of the pedal stops the axes; the next
  * press leads them, jerk-limited, back to where the leg was left, and then on. An axis that cannot keep up
- * slows the time of the path down, for all axes, so that they stay on it. An axis that strays from its path
- * all the same, one that holds it up for seconds, an obstacle or a refusal ends the task for all axes, which
- * then stop at once: their drive is given back.
+ * slows the time of the path down, for all axes, so that they stay on it; while the breathing gate is closed,
+ * a path that would insert stands, and then goes on. An axis that strays from its path all the same, one that
+ * holds it up for seconds, an obstacle or a refusal ends the task for all axes, which then stop at once:
+ * their drive is given back.
  */
 #pragma once
 
@@ -25,6 +26,7 @@ class PathMode final : public HeldMode {
   explicit PathMode(const RobotPlan& plan);
 
   void on_unsent(const KernelRequest& request) noexcept override;
+  void hold_insertion(bool held) noexcept override { insertion_held_ = held; }
   [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const noexcept override;
 
  private:
@@ -36,6 +38,7 @@ class PathMode final : public HeldMode {
   void settle(const ilk_snapshot_t& snapshot) noexcept;
   void end_leg(const ilk_snapshot_t& snapshot) noexcept;
   void advance(const ilk_snapshot_t& snapshot) noexcept;
+  [[nodiscard]] bool waits_for_breath() const noexcept;
   [[nodiscard]] bool strays(const ilk_snapshot_t& snapshot) noexcept;
   /** Whether the leg that runs moves the axis in `slot`. */
   [[nodiscard]] bool leg_moves(std::uint32_t slot) const noexcept {
@@ -46,11 +49,14 @@ class PathMode final : public HeldMode {
 
   const double period_s_;
   const std::uint32_t settle_ticks_;
+  const std::optional<std::uint32_t> insertion_slot_;
   TrajectoryFollower walk_;
   TrajectoryFollower::Points points_{};
   std::array<AxisTracker, ILK_SLOTS> trackers_{};
-  double rate_ = 1.0;            /**< at which the time of the path passes */
-  std::uint32_t slowest_ = 0;    /**< slot of the axis that is farthest behind */
+  bool insertion_held_ = false;
+  double lag_rate_ = 1.0;     /**< at which the axis that is farthest behind lets the time of the path pass */
+  double breath_rate_ = 1.0;  /**< the same of the breathing gate */
+  std::uint32_t slowest_ = 0; /**< slot of the axis that is farthest behind */
   std::uint32_t alive_tick_ = 0; /**< in which the time of the path last passed */
   std::uint32_t seen_tick_ = 0;  /**< of the snapshot before, while executing */
   std::uint32_t end_tick_ = 0;   /**< since which the path is at its end and axes may lag behind */

@@ -230,6 +230,25 @@ TEST_F(BiopsyModeTest, ReleaseStopsInTheSameTickAndTheNextPressGoesOn) {
   EXPECT_GT(loop_.true_position(needle_push), paused_at + 3000);
 }
 
+TEST_F(BiopsyModeTest, WhileTheBreathingGateIsClosedTheHandPushesNothingAndItGoesOnWhenItOpens) {
+  begin();
+  press_hand(5.0);
+  loop_.run(1000);
+  const std::int32_t begun = loop_.state().axis[needle_push].position_counts;
+  ASSERT_GT(begun, 500);
+  loop_.hold({.insertion = true});
+  loop_.run(500);
+  const std::int32_t held = loop_.state().axis[needle_push].position_counts;
+  loop_.run(6000);
+  EXPECT_NEAR(loop_.state().axis[needle_push].position_counts, held, 20);
+  EXPECT_EQ(order().phase, TaskPhase::executing);
+  EXPECT_EQ(order().reason, TaskReason::breathing);
+  loop_.hold({});
+  loop_.run(500);
+  EXPECT_GT(loop_.state().axis[needle_push].position_counts, held + 100);
+  EXPECT_EQ(order().reason, TaskReason::none);
+}
+
 TEST_F(BiopsyModeTest, ItCanBeEndedAtAnyTick) {
   for (const std::uint32_t ticks : {1u, 100u, 1003u, 2500u}) {
     begin();

@@ -95,6 +95,7 @@ class ClosedLoop {
 
   /** The app falls silent but for its heartbeat, or speaks again. */
   void silence(bool silent) { silent_ = silent; }
+  void hold(StandStill still) { modes_.hold(still); }
   void confirm(std::uint32_t task) { modes_.confirm(task, seen_tick_); }
   void cancel(std::uint32_t task) { modes_.end(task, TaskReason::cancelled, seen_tick_); }
 

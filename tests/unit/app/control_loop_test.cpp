@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <thread>
@@ -151,6 +152,48 @@ TEST_F(ControlLoopTest, APauseEndsMotionInTheSameTickAndTheOrderGoesOnAfterAnoth
   tick();
   EXPECT_EQ(move().phase, TaskPhase::executing);
   EXPECT_THAT(notices<StopAnswer>(), testing::IsEmpty()) << "it is no STOP";
+}
+
+TEST_F(ControlLoopTest, ASignalOfTheBreathingGateGrowsOldOnTheControlThreadAndConsolesLearnOfIt) {
+  snapshot_.clock = ILK_CLOCK_SIM;
+  snapshot_.period_us = 1000;
+  tick();
+  OutsideHolds& holds = channel_->holds.writing();
+  holds = {};
+  holds.gate.in_use = true;
+  holds.gate.open = true;
+  holds.gate.signal = DeadmanTimer(std::chrono::milliseconds(300));
+  holds.gate.signal.hold(
+      {std::chrono::steady_clock::now(), snapshot_.state.system.tick, snapshot_.period_us});
+  channel_->holds.publish();
+  tick(299);
+  EXPECT_EQ(channel_->view.newest().gate, GateState::open);
+  channel_->network_wake.clear();
+  tick(1);
+  EXPECT_EQ(channel_->view.newest().gate, GateState::no_signal);
+  pollfd wake{channel_->network_wake.descriptor(), POLLIN, 0};
+  EXPECT_EQ(::poll(&wake, 1, 0), 1);
+}
+
+TEST_F(ControlLoopTest, AScanEndsMotionInTheSameTickForAsLongAsItLasts) {
+  approve(1, MoveTask{test::insertion, 1500});
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_EQ(move().phase, TaskPhase::executing);
+  channel_->holds.writing() = {{}, true};
+  channel_->holds.publish();
+  for (int press = 0; press < 2; ++press) {
+    tick();
+    EXPECT_NE(sent(ILK_REQUEST_STOP), nullptr);
+    EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
+    EXPECT_EQ(move().phase, TaskPhase::paused);
+    EXPECT_EQ(move().reason, TaskReason::scanning);
+    EXPECT_TRUE(channel_->view.newest().scanning);
+  }
+  channel_->holds.writing() = {};
+  channel_->holds.publish();
+  tick();
+  EXPECT_EQ(move().phase, TaskPhase::executing) << "a press after it";
 }
 
 TEST_F(ControlLoopTest, AJogEndsInTheTickInWhichItsHoldIsOldEnough) {

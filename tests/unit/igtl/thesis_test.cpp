@@ -36,6 +36,32 @@ std::optional<ImagerWord> word_of(const std::string& device, Body body) {
   return Thesis().take({device, std::move(body), 0, 1, {}}, RobotState{}, false).word;
 }
 
+tl::expected<HoldMessage, Unwanted> hold_of(const std::string& device, const std::string& text) {
+  return read_hold({device, Text{text}, 0, 1, {}}).value();
+}
+
+TEST(Holds, AreReadInUpperAndLowerCaseAndASignalSaysForHowLong) {
+  using std::chrono::milliseconds;
+  const auto open = std::get<GateSignal>(hold_of("BREATHING_GATE", "OPEN 2000").value());
+  EXPECT_TRUE(open.open);
+  EXPECT_EQ(open.validity, milliseconds(2000));
+  const auto hold = std::get<GateSignal>(hold_of("breathing_gate", "hold").value());
+  EXPECT_FALSE(hold.open);
+  EXPECT_EQ(hold.validity, milliseconds(500));
+  EXPECT_TRUE(std::get<ScanState>(hold_of("SCAN", "on").value()).active);
+  EXPECT_FALSE(std::get<ScanState>(hold_of("Scan", "Off").value()).active);
+}
+
+TEST(Holds, WhatIsUnclearIsRefusedAndOpensNothing) {
+  for (const char* text : {"", "open ", "open 49", "open 2001", "open -300", "open 1e3", "open 300 ",
+                           "open  300", "opened", "closed", "open 99999999999999999999"}) {
+    EXPECT_EQ(hold_of("BREATHING_GATE", text).error().code, StatusCode::configuration) << text;
+  }
+  EXPECT_THAT(hold_of("SCAN", "open").error().reason, HasSubstr("expected on or off"));
+  EXPECT_FALSE(read_hold({"SCAN", Status{}, 0, 1, {}})) << "a STATUS only shows that its sender lives";
+  EXPECT_FALSE(read_hold({"SCANNER", Text{"on"}, 0, 1, {}}));
+}
+
 TEST(Thesis, WordsOfAnImagerAreGivenToBeKept) {
   const auto tip = word_of("TIP_POSE", Transform{shifted(1, 2, 3)});
   EXPECT_EQ(std::get<TipPose>(tip.value()).scanner_from_tip, shifted(1, 2, 3));

@@ -36,6 +36,7 @@ export type DeclaredPositions = Schemas["DeclaredPositions"];
 export type Connection = Schemas["Connection"];
 export type NavigationConnection = Schemas["NavigationConnection"];
 export type Imager = Schemas["Imager"];
+export type Holds = Schemas["Holds"];
 export type NavigationRole = NavigationConnection["role"];
 export type Biopsy = Schemas["Biopsy"];
 export type BiopsyNow = Schemas["BiopsyNow"];
@@ -237,6 +238,10 @@ export const api = {
   setMembranes: (depths_mm: number[]) =>
     act(() => http.PUT("/api/biopsy/membranes", { body: { depths_mm, next: 0 } })),
   resetMembranes: () => act(() => http.POST("/api/biopsy/membranes/reset")),
+
+  holds: () => read(() => http.GET("/api/holds")),
+  setBreathingGate: (in_use: boolean) => act(() => http.PUT("/api/holds/gate", { body: { in_use } })),
+  holdForScan: (active: boolean) => act(() => http.PUT("/api/holds/scan", { body: { active } })),
 
   communications: () => read(() => http.GET("/api/communications")),
   disconnect: (id: number) => act(() => http.PUT("/api/communications/disconnect", { body: { id } })),

@@ -1159,6 +1159,89 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/holds": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * What holds motion still from outside: the breathing gate and a scan. The stream carries the same as a text message of type
+         *     `holds` whenever something of it but the scan's age changes.
+         */
+        get: operations["getHolds"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/holds/gate": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Turns the breathing gate on or off; recorded. While it is in use the insertion advances only while the newest signal says
+         *     `open` and is valid: else it slows down along its path, waits, and goes on by itself under the same press of the pedal.
+         *     Withdrawal, homing and other axes wait for no breath.
+         */
+        put: operations["useBreathingGate"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/holds/gate/signal": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * A signal of the breathing gate, valid for `valid_ms` from when it came: by the kernel's time in the simulated clock, by the
+         *     wall's else. Send the next one well before. It needs no control, and is kept whether or not the gate is in use. One source
+         *     at a time: 409 GATE_SOURCE while the newest signal of another one is valid. When the session ends, the gate is closed.
+         */
+        post: operations["signalBreathingGate"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/holds/scan": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Says that a scan begins or has ended; recorded. It begins at once, whoever says so: MOTION ends as by the release of the
+         *     pedal, no press begins it anew, and approvals, confirmations, moves and jogs are refused (SCANNING). It is ended by whoever
+         *     is in control, or by the session or connection that began it, and by nothing else.
+         */
+        put: operations["holdForScan"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/jog": {
         parameters: {
             query?: never;
@@ -1428,7 +1511,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED, NOT_IMPLEMENTED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, CONTROL, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE, MOVED,
+             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, SCANNING, GATE_SOURCE, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE, MOVED,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of cases NO_CASE, CASE, OTHER_ROBOT; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
@@ -2394,6 +2477,38 @@ export interface components {
                 received: string;
                 age_s: number;
             } | null;
+        };
+        Holds: {
+            gate: {
+                in_use: boolean;
+                /**
+                 * @description no_signal: none came, the newest is no longer valid, its source is gone, or no kernel is connected.
+                 * @enum {string}
+                 */
+                state: "off" | "open" | "hold" | "no_signal";
+                /** @description Whose signal was the newest; null: its source is gone, or none came. */
+                source: string | null;
+            };
+            scan: {
+                active: boolean;
+                /** @description Who began it. */
+                source: string | null;
+                /** Format: date-time */
+                since: string | null;
+                age_s: number | null;
+            };
+        };
+        GateUse: {
+            in_use: boolean;
+        };
+        GateSignal: {
+            /** @enum {string} */
+            state: "open" | "hold";
+            /** @default 500 */
+            valid_ms: number;
+        };
+        ScanHold: {
+            active: boolean;
         };
         NavigationRole: {
             /** @enum {string} */
@@ -4637,6 +4752,125 @@ export interface operations {
             409: components["responses"]["Refused"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoKernel"];
+        };
+    };
+    getHolds: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Both. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Holds"];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    useBreathingGate: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["GateUse"];
+            };
+        };
+        responses: {
+            /** @description Gate and scan. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Holds"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Control"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    signalBreathingGate: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["GateSignal"];
+            };
+        };
+        responses: {
+            /** @description Gate and scan. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Holds"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            409: components["responses"]["Refused"];
+            422: components["responses"]["Invalid"];
+        };
+    };
+    holdForScan: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ScanHold"];
+            };
+        };
+        responses: {
+            /** @description Gate and scan. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Holds"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            /** @description SCANNING: the scan is of another source. */
+            409: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
         };
     };
     beginJog: {

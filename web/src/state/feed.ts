@@ -144,6 +144,9 @@ function takeIn(message: StreamMessage): void {
     case "mode":
       useConsole.setState({ mode: message });
       break;
+    case "holds":
+      useConsole.setState({ holds: message, holdsAtMs: performance.now() });
+      break;
     case "log":
       useConsole.setState((state) => ({ log: mergeLines(state.log, [message]) }));
       break;
@@ -158,12 +161,13 @@ async function loadDescription(): Promise<void> {
   clearTimeout(reload);
   describedConfigCrc = null;
   const before = useConsole.getState();
-  const [robots, motors, configuration, mode, control, logs, proposals] = await Promise.all([
+  const [robots, motors, configuration, mode, control, holds, logs, proposals] = await Promise.all([
     api.robots(),
     api.motors(),
     api.kernelConfiguration(),
     api.mode(),
     api.control(),
+    api.holds(),
     api.logs(MOST_LINES),
     api.proposals(),
   ]);
@@ -178,6 +182,8 @@ async function loadDescription(): Promise<void> {
   const { mode: newestMode, control: newestControl } = useConsole.getState();
   if (mode.ok && newestMode === before.mode) useConsole.setState({ mode: mode.value });
   if (control.ok && newestControl === before.control) useConsole.setState({ control: control.value });
+  if (holds.ok && useConsole.getState().holds === before.holds)
+    useConsole.setState({ holds: holds.value, holdsAtMs: performance.now() });
   if (logs.ok) {
     useConsole.setState((state) => ({
       log: mergeLines(newSince(before.log, state.log), logs.value.lines),
@@ -190,7 +196,14 @@ async function loadDescription(): Promise<void> {
     }));
   }
   const complete =
-    robots.ok && motors.ok && configuration.ok && mode.ok && control.ok && logs.ok && proposals.ok;
+    robots.ok &&
+    motors.ok &&
+    configuration.ok &&
+    mode.ok &&
+    control.ok &&
+    holds.ok &&
+    logs.ok &&
+    proposals.ok;
   if (complete) describedConfigCrc = useConsole.getState().frame?.configCrc ?? null;
   else reload = setTimeout(() => void loadDescription(), RETRY_PAUSE_MS);
 }

@@ -1,14 +1,15 @@
 /** The stream's text messages that the console uses, see `components/x-stream` of spec/openapi.yaml. */
-import type { LogLine, ModeAnswer, MotionControl, Proposal } from "../api/client";
+import type { Holds, LogLine, ModeAnswer, MotionControl, Proposal } from "../api/client";
 
 export type StreamMessage =
   | ({ readonly type: "proposal" } & Proposal)
   | ({ readonly type: "control" } & MotionControl)
   | ({ readonly type: "mode" } & ModeAnswer)
   | ({ readonly type: "log" } & LogLine)
+  | ({ readonly type: "holds" } & Holds)
   | { readonly type: "session"; readonly ended: true };
 
-const used: ReadonlySet<unknown> = new Set(["proposal", "control", "mode", "log", "session"]);
+const used: ReadonlySet<unknown> = new Set(["proposal", "control", "mode", "log", "holds", "session"]);
 
 /** The message; null when it is of a type that the console does not use. */
 export function streamMessage(text: string): StreamMessage | null {

@@ -1,6 +1,7 @@
 /** Everything the console knows. The stream and the answers of the app write it; panels only read it. */
 import { create } from "zustand";
 import type {
+  Holds,
   LogLevel,
   LogLine,
   ModeAnswer,
@@ -52,6 +53,9 @@ export interface ConsoleState {
   readonly pageKernel: ConfiguredKernel | null;
   readonly mode: ModeAnswer | null;
   readonly control: MotionControl | null;
+  /** What holds motion still from outside, as it was at `holdsAtMs`; null until the app has said it. */
+  readonly holds: Holds | null;
+  readonly holdsAtMs: number;
   /** Why control did not change hands as asked. */
   readonly controlNotice: Notice | null;
   /** Newest first. */
@@ -93,6 +97,8 @@ export const initialState: ConsoleState = {
   pageKernel: null,
   mode: null,
   control: null,
+  holds: null,
+  holdsAtMs: 0,
   controlNotice: null,
   proposals: [],
   log: [],

@@ -5,6 +5,7 @@ import { Refusal } from "../../design/Refusal";
 import { entry } from "../../generated/catalog";
 import { formatAge } from "../../state/freshness";
 import { useConsole } from "../../state/store";
+import { HoldFacts } from "./HoldFacts";
 import { ImagerFacts } from "./ImagerFacts";
 import { ModeSelector } from "./ModeSelector";
 import "./status.css";
@@ -19,6 +20,7 @@ export function StatusPanel() {
   return (
     <Panel title="Status" className="status-panel" asked={{ answeredAtMs, everyMs: STATUS_EVERY_MS }}>
       <System />
+      <HoldFacts />
       <ImagerFacts />
       <ModeSelector />
       {notice !== undefined && (
