@@ -55,6 +55,10 @@ struct SliderPair {
   double max_separation_mm;
 };
 
+/** Velocity of the treatment point per joint velocity, in the zFrame: rows 0 to 2 the point (mm/mm, mm/rad),
+ * rows 3 to 5 the angular velocity (rad/mm, rad/rad); a column for each joint. */
+using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
+
 /** The kinematics of a robot. A family that leaves out a part does not compile. */
 class Kinematics {
  public:
@@ -69,6 +73,10 @@ class Kinematics {
   /** Pose of the treatment point. */
   [[nodiscard]] virtual KinematicsResult<Pose> zframe_from_treatment(
       std::span<const double> positions) const = 0;
+
+  /** How the treatment point moves with each joint. Refused where forward kinematics refuses the positions.
+   */
+  [[nodiscard]] virtual KinematicsResult<Jacobian> jacobian(std::span<const double> positions) const = 0;
 
   /** Positions that put the treatment point at `target`, coming straight from `entry`, with the probe turned
    * by `rotation_rad`. Soft limits play no part. */

@@ -2,12 +2,13 @@
 
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <algorithm>
 
 namespace interlock {
 
 Manipulability manipulability_of(const ScaledJacobian& scaled) noexcept {
   using Square = Eigen::Matrix<double, 6, 6>;
-  using Tall = Eigen::Matrix<double, 7, 6>;
+  using Tall = Eigen::Matrix<double, 10, 6>;
   // A row of zeros and an orthogonal factor change no singular value; a square matrix needs no
   // preconditioner, whose templates take longer to compile than all the rest of the folder.
   Tall transposed = Tall::Zero();
@@ -19,7 +20,8 @@ Manipulability manipulability_of(const ScaledJacobian& scaled) noexcept {
     return {};
   }
   const auto& values = decomposition.singularValues();
-  return {values.prod(), values.minCoeff(), values.maxCoeff()};
+  return {values.prod(), scaled.cols() == 0 ? 0.0 : values[std::min<Eigen::Index>(6, scaled.cols()) - 1],
+          values[0]};
 }
 
 }  // namespace interlock

@@ -9,8 +9,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstddef>
 
 #include "kinematics/joints.hpp"
 
@@ -18,30 +16,34 @@ namespace interlock {
 
 /** Singular values of the scaled Jacobian, without unit. */
 struct Manipulability {
-  double measure = 0.0;  /**< product of all six: Yoshikawa's sqrt(det(J Jᵀ)); 0 where a direction is lost */
-  double smallest = 0.0; /**< tool motion per joint motion in the worst direction */
-  double largest = 0.0;  /**< and in the best */
+  double measure = 0.0; /**< product of all six: Yoshikawa's sqrt(det(J Jᵀ)); 0 where a direction is lost */
+  /** Tool motion per joint motion in the worst direction; with fewer than six joints, the worst of as many
+   * directions as there are joints. */
+  double smallest = 0.0;
+  double largest = 0.0; /**< and in the best */
 };
 
-/** A Jacobian whose entries have no unit any more. */
-using ScaledJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 7>;
+/** A Jacobian whose entries have no unit any more; a robot has at most ten joints. */
+using ScaledJacobian = Eigen::Matrix<double, 6, Eigen::Dynamic, Eigen::ColMajor, 6, 10>;
 
 /** Of a scaled Jacobian; all zero when an entry is not finite. */
 Manipulability manipulability_of(const ScaledJacobian& scaled) noexcept;
 
-/** Of a Jacobian with columns as `fields`; the characteristic length lies between 0.001 and 10 000 mm. */
-template <typename Joints, int columns, std::size_t count>
-KinematicsResult<Manipulability> manipulability(const Eigen::Matrix<double, 6, columns>& jacobian,
-                                                const std::array<JointField<Joints>, count>& fields,
+/** Of a Jacobian with a column for each of `joints`, in their order; the characteristic length lies between
+ * 0.001 and 10 000 mm. */
+template <typename Columns, typename Joints>
+KinematicsResult<Manipulability> manipulability(const Eigen::MatrixBase<Columns>& jacobian,
+                                                const Joints& joints,
                                                 double characteristic_length_mm) noexcept {
-  static_assert(columns == static_cast<int>(count));
   return check_range("characteristic_length_mm", characteristic_length_mm, 0.001, length_limit_mm).map([&] {
     ScaledJacobian scaled = jacobian;
     scaled.template bottomRows<3>() *= characteristic_length_mm;
-    for (std::size_t joint = 0; joint < count; ++joint) {
-      if (fields[joint].unit == Unit::rad) {
-        scaled.col(static_cast<Eigen::Index>(joint)) /= characteristic_length_mm;
+    Eigen::Index column = 0;
+    for (const Joint& joint : joints) {
+      if (joint.unit == Unit::rad) {
+        scaled.col(column) /= characteristic_length_mm;
       }
+      ++column;
     }
     return manipulability_of(scaled);
   });

@@ -24,6 +24,7 @@
 #include "motion/deadman_timer.hpp"
 #include "motion/path_program.hpp"
 #include "robot/modes.hpp"
+#include "targeting/error_budget.hpp"
 
 namespace interlock {
 
@@ -135,6 +136,7 @@ constexpr std::string_view source_name(TaskSource source) noexcept {
 struct ReachedAim {
   Pose desired;
   Pose reachable;
+  KinematicsResult<ErrorBudget> error_budget; /**< of the reachable pose, or why there is none */
 };
 
 /** One motion that somebody wants. */

@@ -39,6 +39,7 @@ nlohmann::json to_json(const Proposal& proposal) {
     json["aim"] = {{"desired", row_major(task.aim->desired)},
                    {"reachable", row_major(task.aim->reachable)},
                    {"deviation", to_json(deviation(task.aim->reachable, task.aim->desired))}};
+    add_error_budget(json["aim"], task.aim->error_budget);
   }
   if (task.mode.moves_the_whole()) {
     json["mode"] = task.mode.name;

@@ -52,6 +52,9 @@ void read_kinematics(TableReader& root, Robot& robot, std::span<const Kinematics
   const ReadKinematics read = table.choice("family", families);
   robot.family = table.text("family");
   robot.kinematics = read(table);
+  if (table.has("calibration_mm")) {
+    robot.calibration_mm = table.number_between("calibration_mm", 0.0, 100.0);
+  }
   table.refuse_unknown_keys();
   TableReader probe = root.table("probe");
   robot.probe.treatment_to_tip_mm = probe.offset_mm("treatment_to_tip_mm");

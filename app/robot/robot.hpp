@@ -254,8 +254,11 @@ struct Robot {
   LoopLimits loop;
   std::string family = "none"; /**< of its kinematics: "neuro_rcm" */
   KinematicsPtr kinematics;    /**< null: its axes move one by one, and it has no pose */
-  ProbeOffsets probe;          /**< until somebody sets others */
-  TargetingLimits targeting;   /**< with kinematics */
+  /** Standard deviation of the treatment point along each coordinate that remains after the kinematics was
+   * calibrated, in mm; empty: nobody has stated it. */
+  std::optional<double> calibration_mm;
+  ProbeOffsets probe;        /**< until somebody sets others */
+  TargetingLimits targeting; /**< with kinematics */
   std::vector<Axis> axes;
   std::vector<Sensor> sensors;
   std::vector<HomeStep> home_steps; /**< in the order in which they run; each axis with a switch homes once */

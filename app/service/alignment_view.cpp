@@ -29,11 +29,28 @@ ProbeOffsets probe_of(const Targeting& targeting) {
 
 namespace {
 
+/** A rotation that is ignored leaves nothing by which the error of the registration is known. */
+ImageAccuracy accuracy_of(const Targeting& targeting) {
+  ImageAccuracy accuracy;
+  if (targeting.residual_mm && !targeting.fiducial_points.empty() &&
+      !targeting.ignore_registration_rotation) {
+    accuracy.registration = RegistrationFit{*targeting.residual_mm, {}};
+    for (const Point& each : targeting.fiducial_points) {
+      accuracy.registration->fiducials_mm.push_back(vector(each));
+    }
+  }
+  if (targeting.target_covariance_mm2) {
+    accuracy.target_mm2 = Eigen::Matrix3d(targeting.target_covariance_mm2->data());
+  }
+  return accuracy;
+}
+
 Known<Alignment> alignment_of(const Robot& robot, const Targeting& targeting, const PoseSetup& setup) {
   if (!targeting.entry_point || !targeting.target_point) {
     return unknown("NO_TARGET", "Entry and target are not both set.");
   }
-  const EntryTarget aim{vector(*targeting.entry_point), vector(*targeting.target_point), 0.0};
+  const EntryTarget aim{vector(*targeting.entry_point), vector(*targeting.target_point), 0.0,
+                        accuracy_of(targeting)};
   return align(robot, setup.kinematics, setup.registration, aim).map_error(problem_of);
 }
 

@@ -1,5 +1,6 @@
 #include "service/targeting.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -123,10 +124,60 @@ std::optional<Point> read_point(Fields& fields, const std::string& name) {
   return point;
 }
 
+/** None, or as many as a registration needs. */
+std::vector<Point> read_points(Fields& fields, const std::string& name) {
+  std::vector<Point> points;
+  const json* list = fields.value(name);
+  if (list == nullptr) {
+    return points;
+  }
+  const bool is_counted = list->is_array() && std::ssize(*list) <= most_fiducials &&
+                          (list->empty() || std::ssize(*list) >= fewest_fiducials);
+  if (!is_counted) {
+    fields.reject(name, "is no list of fiducials", "a list of 3 to 1000 points, or an empty one");
+    return points;
+  }
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const std::string place = name + "[" + std::to_string(i) + "]";
+    const json body{{"point", (*list)[i]}};
+    Fields each(body, {"point"}, fields.place_of(place));
+    points.push_back(read_point(each, "point").value_or(Point{}));
+    fields.adopt(each);
+  }
+  return points;
+}
+
 /** How well a registration fits the points by which it was found. */
 void read_fit(Fields& fields, Targeting& targeting) {
   targeting.residual_mm = fields.number("residual_mm", 0.0, largest_residual_mm);
   targeting.fiducials = fields.integer("fiducials", fewest_fiducials, most_fiducials);
+  targeting.fiducial_points = read_points(fields, "fiducial_points");
+  const auto count = static_cast<std::int64_t>(targeting.fiducial_points.size());
+  if (count != 0 && targeting.fiducials.value_or(count) != count) {
+    fields.reject("fiducial_points", "are not as many as fiducials says", "a point for each fiducial");
+  } else if (count != 0) {
+    targeting.fiducials = count;
+  }
+}
+
+/** Of the target point: symmetric, and negative in no direction. */
+std::optional<std::array<double, 9>> read_covariance(Fields& fields, const std::string& name) {
+  const auto numbers = fields.numbers(name, std::tuple_size_v<std::array<double, 9>>);
+  if (!numbers) {
+    return std::nullopt;
+  }
+  std::array<double, 9> covariance{};
+  std::ranges::copy(*numbers, covariance.begin());
+  const Eigen::Matrix3d matrix(covariance.data());
+  const double largest = matrix.cwiseAbs().maxCoeff();
+  const double rounding = 1e-9 * largest;
+  if (!(largest <= largest_variance_mm2) ||
+      !((matrix - matrix.transpose()).cwiseAbs().maxCoeff() <= rounding) ||
+      !(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix).eigenvalues().minCoeff() >= -rounding)) {
+    fields.reject(name, "is no covariance",
+                  "a symmetric matrix without a negative eigenvalue, entries of at most 10000 mm²");
+  }
+  return covariance;
 }
 
 /** Each name once. */
@@ -256,8 +307,10 @@ json to_stored(const Targeting& targeting) {
             {"ignore_registration_rotation", targeting.ignore_registration_rotation},
             {"residual_mm", or_null(targeting.residual_mm)},
             {"fiducials", or_null(targeting.fiducials)},
+            {"fiducial_points", targeting.fiducial_points},
             {"entry_point", or_null(targeting.entry_point)},
             {"target_point", or_null(targeting.target_point)},
+            {"target_covariance_mm2", or_null(targeting.target_covariance_mm2)},
             {"planned_targets", planned_json(targeting.planned_targets)},
             {"reported_position", or_null(targeting.reported_position)}};
   for (const Offset& offset : offsets) {
@@ -269,13 +322,13 @@ json to_stored(const Targeting& targeting) {
 tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   const json values = stored.is_object() ? without_nulls(stored) : stored;
   Targeting targeting;
-  Fields fields(
-      values,
-      {"registration", "registration_epoch", "registration_expired", "registration_doubt", "override_reason",
-       "ignore_registration_rotation", "residual_mm", "fiducials", "entry_point", "target_point",
-       "planned_targets", "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
-       "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
-      "targeting");
+  Fields fields(values,
+                {"registration", "registration_epoch", "registration_expired", "registration_doubt",
+                 "override_reason", "ignore_registration_rotation", "residual_mm", "fiducials",
+                 "fiducial_points", "entry_point", "target_point", "target_covariance_mm2", "planned_targets",
+                 "reported_position", "treatment_to_tip_offset", "robot_to_entry_offset",
+                 "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"},
+                "targeting");
   targeting.registration = read_pose(fields, "registration");
   targeting.registration_epoch = fields.integer("registration_epoch", 0, latest_epoch).value_or(0);
   targeting.registration_expired = fields.text("registration_expired").value_or("");
@@ -285,6 +338,7 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
   read_fit(fields, targeting);
   targeting.entry_point = read_point(fields, "entry_point");
   targeting.target_point = read_point(fields, "target_point");
+  targeting.target_covariance_mm2 = read_covariance(fields, "target_covariance_mm2");
   targeting.planned_targets = read_planned(fields, "planned_targets");
   targeting.reported_position = read_pose(fields, "reported_position");
   read_offsets(fields, targeting);
@@ -292,8 +346,8 @@ tl::expected<Targeting, Problem> stored_targeting(const json& stored) {
 }
 
 tl::expected<Targeting, Problem> with_registration(Targeting targeting, const json& body) {
-  Fields fields(
-      body, {"registration", "ignore_registration_rotation", "residual_mm", "fiducials", "override_reason"});
+  Fields fields(body, {"registration", "ignore_registration_rotation", "residual_mm", "fiducials",
+                       "fiducial_points", "override_reason"});
   fields.require({{"registration", "16 numbers, row-major"}});
   targeting.registration = read_pose(fields, "registration");
   targeting.registration_epoch = targeting.present_epoch;
@@ -344,9 +398,9 @@ tl::expected<Targeting, Problem> with_reported_pose(Targeting targeting, const j
 }
 
 tl::expected<Targeting, Problem> with_target(Targeting targeting, const json& body) {
-  Fields fields(body,
-                {"entry_point", "target_point", "treatment_to_tip_offset", "robot_to_entry_offset",
-                 "cannula_to_treatment_offset", "canula_to_treatment_offset", "treatment_to_robot_at_home"});
+  Fields fields(body, {"entry_point", "target_point", "target_covariance_mm2", "treatment_to_tip_offset",
+                       "robot_to_entry_offset", "cannula_to_treatment_offset", "canula_to_treatment_offset",
+                       "treatment_to_robot_at_home"});
   if (fields.has("cannula_to_treatment_offset") && fields.has("canula_to_treatment_offset")) {
     fields.reject("canula_to_treatment_offset", "and cannula_to_treatment_offset are the same",
                   "one of them");
@@ -356,6 +410,11 @@ tl::expected<Targeting, Problem> with_target(Targeting targeting, const json& bo
   }
   if (const auto target = read_point(fields, "target_point")) {
     targeting.target_point = target;
+    targeting.target_covariance_mm2.reset();
+  }
+  if (fields.has("target_covariance_mm2")) {
+    fields.require({{"target_point", "the point that it is of"}});
+    targeting.target_covariance_mm2 = read_covariance(fields, "target_covariance_mm2");
   }
   read_offsets(fields, targeting);
   return unless_wrong(fields, targeting);
@@ -371,6 +430,7 @@ tl::expected<Targeting, Problem> with_planned_targets(Targeting targeting, const
 tl::expected<Targeting, Problem> without_target(Targeting targeting, const json& /*body*/) {
   targeting.entry_point.reset();
   targeting.target_point.reset();
+  targeting.target_covariance_mm2.reset();
   return targeting;
 }
 
@@ -405,6 +465,7 @@ void aim_at(Targeting& targeting, const RowMajor& pose) {
     depth_mm = std::max(1.0, std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2]));
   }
   targeting.target_point = {pose[3], pose[7], pose[11]};
+  targeting.target_covariance_mm2.reset();
   targeting.entry_point = {pose[3] - depth_mm * pose[2], pose[7] - depth_mm * pose[6],
                            pose[11] - depth_mm * pose[10]};
 }

@@ -37,6 +37,9 @@ constexpr std::int64_t fewest_fiducials = 3;
 /** More points than this are no fiducials. */
 constexpr std::int64_t most_fiducials = 1000;
 
+/** Largest entry of a covariance. */
+constexpr double largest_variance_mm2 = 10000.0;
+
 /** Characters of a reason. */
 constexpr std::size_t longest_reason = 200;
 
@@ -77,6 +80,7 @@ struct Targeting {
   bool ignore_registration_rotation = false;
   std::optional<double> residual_mm;     /**< root mean square over the fiducials, if its sender has it */
   std::optional<std::int64_t> fiducials; /**< by how many it was found, if its sender says so */
+  std::vector<Point> fiducial_points;    /**< where they were in the scanner, if its sender says so */
   std::int64_t registration_epoch = 0;   /**< in which it was set */
   std::string registration_expired;      /**< why, where that is kept; empty: it has not */
   std::string registration_doubt;        /**< why it can hardly be right; empty: it can */
@@ -86,12 +90,13 @@ struct Targeting {
   std::int64_t present_epoch = 0; /**< in which it was judged; not kept */
   std::optional<Point> entry_point;
   std::optional<Point> target_point;
-  std::vector<PlannedTarget> planned_targets; /**< in the order of whoever planned them */
-  double treatment_to_tip_mm = 0.0;           /**< A */
-  double robot_to_entry_mm = 0.0;             /**< B */
-  double cannula_to_treatment_mm = 0.0;       /**< C */
-  double treatment_to_robot_at_home_mm = 0.0; /**< D */
-  std::optional<RowMajor> reported_position;  /**< as an imager reported it */
+  std::optional<std::array<double, 9>> target_covariance_mm2; /**< of that point, if its sender says so */
+  std::vector<PlannedTarget> planned_targets;                 /**< in the order of whoever planned them */
+  double treatment_to_tip_mm = 0.0;                           /**< A */
+  double robot_to_entry_mm = 0.0;                             /**< B */
+  double cannula_to_treatment_mm = 0.0;                       /**< C */
+  double treatment_to_robot_at_home_mm = 0.0;                 /**< D */
+  std::optional<RowMajor> reported_position;                  /**< as an imager reported it */
 
   bool operator==(const Targeting&) const = default;
 };

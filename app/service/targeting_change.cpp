@@ -70,6 +70,7 @@ Problem former_point() {
 Targeting without_points(Targeting targeting) {
   targeting.entry_point.reset();
   targeting.target_point.reset();
+  targeting.target_covariance_mm2.reset();
   targeting.planned_targets.clear();
   return targeting;
 }

@@ -47,6 +47,7 @@ KinematicsResult<Alignment> align(const Robot& robot, const RobotKinematics& kin
     alignment.reachable = scanner_from_zframe * reached;
     alignment.reachable_tip =
         alignment.reachable * Eigen::Vector3d(0.0, 0.0, kinematics.probe().treatment_to_tip_mm);
+    alignment.error_budget = error_budget_of(robot, kinematics, scanner_from_zframe, positions, aim.accuracy);
     alignment.deviation = deviation(alignment.reachable, alignment.desired);
     if (const auto depth_mm = kinematics.depth_mm(positions)) {
       const double length_mm =

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "targeting/error_budget.hpp"
 #include "targeting/registration.hpp"
 #include "targeting/robot_kinematics.hpp"
 
@@ -20,6 +21,7 @@ struct EntryTarget {
   Eigen::Vector3d entry = Eigen::Vector3d::Zero();
   Eigen::Vector3d target = Eigen::Vector3d::Zero();
   double rotation_rad = 0.0; /**< of the probe about its axis */
+  ImageAccuracy accuracy = {};
 };
 
 /** The setpoint of one axis, within what the kernel accepts of it once homed. */
@@ -38,6 +40,7 @@ struct Alignment {
   Deviation deviation;                                     /**< of the reachable pose from the desired one */
   /** D + insertion - C, where that is a length; of a robot that goes through an entry point alone. */
   std::optional<double> cannula_length_mm;
+  KinematicsResult<ErrorBudget> error_budget; /**< of the reachable pose, or why there is none */
 };
 
 /** Whether a pose that misses the desired one by that much may take its place. */

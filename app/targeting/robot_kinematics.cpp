@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "kinematics/domain.hpp"
+#include "kinematics/manipulability.hpp"
 
 namespace interlock {
 
@@ -45,6 +46,28 @@ AxisPositions RobotKinematics::axes_of(std::span<const double> joints) const {
     positions[axis_of_joint_[joint]] = joints[joint];
   }
   return positions;
+}
+
+KinematicsResult<Jacobian> RobotKinematics::jacobian(std::span<const double> positions) const {
+  constexpr double radian_mm = 100.0;
+  return kinematics_->jacobian(joints_of(positions)).and_then([&](const Jacobian& of_joints) {
+    return manipulability(of_joints, kinematics_->joints(), radian_mm)
+        .and_then([](const Manipulability& motion) {
+          const auto check = [](double ratio) {
+            return check_range("tool_motion_per_joint_motion", ratio, smallest_tool_motion,
+                               1.0 / smallest_tool_motion, KinematicsError::Code::singular);
+          };
+          return check(motion.smallest).and_then([&] { return check(motion.largest); });
+        })
+        .map([&] {
+          Jacobian of_axes = Jacobian::Zero(6, static_cast<Eigen::Index>(axis_count_));
+          for (std::size_t joint = 0; joint < axis_of_joint_.size(); ++joint) {
+            of_axes.col(static_cast<Eigen::Index>(axis_of_joint_[joint])) =
+                of_joints.col(static_cast<Eigen::Index>(joint));
+          }
+          return of_axes;
+        });
+  });
 }
 
 KinematicsResult<AxisPositions> RobotKinematics::positions_for(const Eigen::Vector3d& entry,

@@ -19,6 +19,9 @@ namespace interlock {
  * role in the kinematics. */
 using AxisPositions = std::vector<double>;
 
+/** Singular value of the Jacobian, a radian as 100 mm, below which a pose counts as near a singular one. */
+inline constexpr double smallest_tool_motion = 0.01;
+
 /** Kinematics (kinematics/kinematics.hpp) with a probe. Each call needs one position for each axis; axes
  * without a role play no part. */
 class RobotKinematics {
@@ -35,6 +38,11 @@ class RobotKinematics {
   [[nodiscard]] KinematicsResult<Pose> zframe_from_treatment(std::span<const double> positions) const {
     return kinematics_->zframe_from_treatment(joints_of(positions));
   }
+  /** As of `Kinematics`, by the positions of all axes: a column for each axis, zero for one without a role.
+   * SINGULAR where the joints move the treatment point in some direction by less than
+   * `smallest_tool_motion` of their own motion, or by more than its inverse: there neither the Jacobian nor
+   * its inverse says what a small error does. */
+  [[nodiscard]] KinematicsResult<Jacobian> jacobian(std::span<const double> positions) const;
   /** As of `Kinematics`, by the positions of all axes. */
   [[nodiscard]] KinematicsResult<RobotBody> zframe_body(std::span<const double> positions) const {
     return kinematics_->zframe_body(joints_of(positions));

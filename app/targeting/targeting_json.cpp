@@ -10,6 +10,18 @@ namespace {
 
 json list_of(const Eigen::Vector3d& point) { return {point.x(), point.y(), point.z()}; }
 
+/** Column by column. */
+json list_of(const Eigen::Matrix3d& matrix) {
+  return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
+}
+
+json to_json(const ErrorEllipsoid& ellipsoid) {
+  return {{"centre_mm", list_of(ellipsoid.centre_mm)},
+          {"half_axes_mm", list_of(ellipsoid.half_axes_mm)},
+          {"directions", list_of(ellipsoid.directions)},
+          {"covariance_mm2", list_of(ellipsoid.covariance_mm2)}};
+}
+
 }  // namespace
 
 json to_json(const KinematicsError& error) {
@@ -29,6 +41,25 @@ json to_json(const Deviation& deviation) {
           {"angle_deg", deviation.angle_rad * 180.0 / std::numbers::pi}};
 }
 
+void add_error_budget(json& body, const KinematicsResult<ErrorBudget>& budget) {
+  body["error_budget"] = nullptr;
+  body["error_budget_problem"] = nullptr;
+  if (!budget) {
+    body["error_budget_problem"] = to_json(budget.error());
+    return;
+  }
+  auto contributions = json::array();
+  for (const auto& [source, treatment_mm, tip_mm, not_stated] : budget->contributions) {
+    contributions.push_back({{"source", source},
+                             {"treatment_mm", treatment_mm},
+                             {"tip_mm", tip_mm},
+                             {"not_stated", not_stated.empty() ? json() : json(not_stated)}});
+  }
+  body["error_budget"] = {{"treatment", to_json(budget->treatment)},
+                          {"tip", to_json(budget->tip)},
+                          {"contributions", std::move(contributions)}};
+}
+
 json to_json(const Robot& robot, const Alignment& alignment) {
   json setpoints = json::object();
   json clamped = json::array();
@@ -40,15 +71,17 @@ json to_json(const Robot& robot, const Alignment& alignment) {
     }
   }
   const auto& length = alignment.cannula_length_mm;
-  return {{"desired", row_major(alignment.desired)},
-          {"reachable", row_major(alignment.reachable)},
-          {"reachable_tip", list_of(alignment.reachable_tip)},
-          {"setpoints", setpoints},
-          {"clamped", clamped},
-          {"deviation", to_json(alignment.deviation)},
-          {"within_tolerance",
-           is_tolerable(alignment.deviation, robot.targeting.tolerance_mm, robot.targeting.tolerance_deg)},
-          {"cannula_length_mm", length ? json(*length) : json()}};
+  json body{{"desired", row_major(alignment.desired)},
+            {"reachable", row_major(alignment.reachable)},
+            {"reachable_tip", list_of(alignment.reachable_tip)},
+            {"setpoints", setpoints},
+            {"clamped", clamped},
+            {"deviation", to_json(alignment.deviation)},
+            {"within_tolerance",
+             is_tolerable(alignment.deviation, robot.targeting.tolerance_mm, robot.targeting.tolerance_deg)},
+            {"cannula_length_mm", length ? json(*length) : json()}};
+  add_error_budget(body, alignment.error_budget);
+  return body;
 }
 
 }  // namespace interlock

@@ -16,9 +16,14 @@ nlohmann::json to_json(const KinematicsError& error);
 /** `offset_mm` (RAS), `distance_mm`, `angle_deg`. */
 nlohmann::json to_json(const Deviation& deviation);
 
+/** Adds `error_budget` and `error_budget_problem`, of which one is null: schemas `ErrorBudget` and
+ * `TargetingProblem` of spec/openapi.yaml. */
+void add_error_budget(nlohmann::json& json, const KinematicsResult<ErrorBudget>& budget);
+
 /**
  * `desired`, `reachable` (16 numbers, row by row), `reachable_tip`, `setpoints` by axis with `counts` and
- * `position`, the names of `clamped` axes, `deviation`, `cannula_length_mm` (null unless the NeuroRobot's).
+ * `position`, the names of `clamped` axes, `deviation`, `cannula_length_mm` (null unless the NeuroRobot's),
+ * `error_budget`.
  */
 nlohmann::json to_json(const Robot& robot, const Alignment& alignment);
 

@@ -278,3 +278,46 @@ test("the proposed alignment brings the current pose to the desired one", async 
   await robot.open("Targeting");
   await expect(error).toContainText(/^0\.[0-2]\d mm, 0\.\d\d°/);
 });
+
+test("the error budget of a pose stands in the alignment, beneath the checks of its motion, and in 3D", async ({
+  robot,
+  page,
+}) => {
+  await put(page, "target", { entry_point: entry, target_point: target });
+  await put(page, "registration", {
+    registration: identity,
+    residual_mm: 0.4,
+    fiducial_points: [
+      [-40, 0, 0],
+      [40, 0, 10],
+      [-30, 60, 0],
+      [0, 20, 60],
+    ],
+    override_reason: "There is no scanner.",
+  });
+  await robot.unlockRobot();
+  await robot.open("Targeting");
+  const alignment = robot.panel("Alignment");
+  const words =
+    /Error of the reachable pose: ±(\d\.\d\d) mm or more at 95 %: registration .*play .*; tip ±.* mm; not stated: calibration, image/;
+  await expect(alignment).toContainText(words);
+  const [, longest] = words.exec((await alignment.textContent()) ?? "") ?? [];
+  await robot.button("Propose desired pose").click();
+  await expect(alignment.getByRole("alert")).toContainText("Refused: DISABLED");
+
+  await robot.open("3D");
+  const picture = robot.panel("3D").getByRole("img", { name: /^3D: .*95 % ellipsoid/ });
+  await expect(picture).toHaveAccessibleName(
+    new RegExp(`95 % ellipsoid with half axes of ${longest}, \\d\\.\\d\\d, \\d\\.\\d\\d mm`),
+  );
+  await expect(robot.panel("3D").getByRole("list", { name: "What is shown" })).toContainText(
+    "where the treatment point may be",
+  );
+  const before = await picture.screenshot();
+  await put(page, "target", { target_point: target, target_covariance_mm2: [400, 0, 0, 0, 25, 0, 0, 0, 1] });
+  await expect(picture).toHaveAccessibleName(/half axes of 55\.9\d, 14\.0\d, /);
+  await expect.poll(async () => before.equals(await picture.screenshot()), "a larger one").toBe(false);
+
+  await robot.open("Proposals");
+  await expect(robot.panel("Proposal 1").getByRole("region", { name: "Checks" })).toContainText(words);
+});

@@ -168,6 +168,10 @@ def test_a_target_in_the_scanner_becomes_setpoints_whatever_the_registration() -
     assert there["deviation"]["distance_mm"] == pytest.approx(math.hypot(*offset))
     assert 0 < there["deviation"]["distance_mm"] < 0.1
 
+    half_axes = [each["error_budget"]["treatment"]["half_axes_mm"] for each in (here, there)]
+    assert half_axes[0] == pytest.approx(half_axes[1])
+    assert half_axes[0][2] > 0
+
     joints = {name: each["position"] for name, each in here["setpoints"].items()}
     code, [reached], _ = kinematics("fk", "--robot", "neuro", lines=[{"joints": joints}])
     assert code == DONE

@@ -44,6 +44,12 @@ KinematicsResult<Pose> NeuroKinematics::zframe_from_treatment(std::span<const do
   return zframe_from_treatment(named(neuro_joint_fields, positions));
 }
 
+KinematicsResult<Jacobian> NeuroKinematics::jacobian(std::span<const double> positions) const {
+  return jacobian(named(neuro_joint_fields, positions)).map([](const NeuroJacobian& found) {
+    return Jacobian(found);
+  });
+}
+
 KinematicsResult<std::vector<double>> NeuroKinematics::positions_for(const Eigen::Vector3d& entry,
                                                                      const Eigen::Vector3d& target,
                                                                      double rotation_rad) const {

@@ -94,6 +94,7 @@ class NeuroKinematics final : public Kinematics {
   [[nodiscard]] KinematicsResult<KinematicsPtr> with_probe(const ProbeOffsets& probe) const override;
   [[nodiscard]] KinematicsResult<Pose> zframe_from_treatment(
       std::span<const double> positions) const override;
+  [[nodiscard]] KinematicsResult<Jacobian> jacobian(std::span<const double> positions) const override;
   [[nodiscard]] KinematicsResult<std::vector<double>> positions_for(const Eigen::Vector3d& entry,
                                                                     const Eigen::Vector3d& target,
                                                                     double rotation_rad) const override;

@@ -86,6 +86,12 @@ KinematicsResult<Pose> ProstateKinematics::zframe_from_treatment(std::span<const
   });
 }
 
+KinematicsResult<Jacobian> ProstateKinematics::jacobian(std::span<const double> positions) const {
+  return jacobian(named(prostate_joint_fields, positions)).map([](const ProstateJacobian& found) {
+    return Jacobian(found);
+  });
+}
+
 KinematicsResult<std::vector<double>> ProstateKinematics::positions_for(const Eigen::Vector3d& entry,
                                                                         const Eigen::Vector3d& target,
                                                                         double rotation_rad) const {

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <kdl/chainjnttojacsolver.hpp>
 #include <numbers>
 
 #include "kinematics/domain.hpp"
@@ -83,6 +84,19 @@ class SerialChain final : public Kinematics {
       std::span<const double> positions) const override {
     return kdl_joints(positions).map(
         [&](const KDL::JntArray& joints) { return pose_of(forward(model_->pose.chain(), joints)); });
+  }
+
+  [[nodiscard]] KinematicsResult<Jacobian> jacobian(std::span<const double> positions) const override {
+    return kdl_joints(positions).map([&](const KDL::JntArray& joints) {
+      KDL::Jacobian found(joints.rows());
+      KDL::ChainJntToJacSolver(model_->pose.chain()).JntToJac(joints, found);
+      Jacobian jacobian = found.data;
+      for (std::size_t joint = 0; joint < model_->joints.size(); ++joint) {
+        jacobian.col(static_cast<Eigen::Index>(joint)).head<3>() *=
+            mm_per_m / model_->joints[joint].per_unit();
+      }
+      return jacobian;
+    });
   }
 
   [[nodiscard]] KinematicsResult<std::vector<double>> positions_for(const Vector3d& entry,

@@ -173,7 +173,7 @@ DraftKind::Reading read_ablation(const Context& context, json body, std::string 
   if (const auto elsewhere = not_aligned(context, *alignment, task->work.as<PathTask>().program->mask())) {
     co_return fail(*elsewhere);
   }
-  task->aim = ReachedAim{alignment->desired, alignment->reachable};
+  task->aim = ReachedAim{alignment->desired, alignment->reachable, alignment->error_budget};
   task->targeting_revision = revision;
   task->rests_on = standing(context.robot, context.view());
   co_return task;
@@ -255,7 +255,7 @@ boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& co
   Task task =
       task_of(RobotMode::coordinated, pose_program(context.robot, *alignment, request.insert), author);
   task.targeting_revision = revision;
-  task.aim = ReachedAim{alignment->desired, alignment->reachable};
+  task.aim = ReachedAim{alignment->desired, alignment->reachable, alignment->error_budget};
   co_return task;
 }
 

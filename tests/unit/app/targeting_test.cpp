@@ -180,6 +180,43 @@ TEST(Targeting, HowWellARegistrationFitsIsKeptWithItAndGoesWithIt) {
   EXPECT_TRUE(replaced["fiducials"].is_null());
 }
 
+const json three_fiducials = {{0, 0, 0}, {50, 0, 0}, {0, 50, 10}};
+
+TEST(Targeting, TheFiducialsOfARegistrationAreKeptAndCountedAndGoWithIt) {
+  const json fitted{
+      {"registration", turned(0.1)}, {"residual_mm", 0.4}, {"fiducial_points", three_fiducials}};
+  const Targeting set = stored_targeting(to_stored(*with_registration({}, fitted))).value();
+  EXPECT_EQ(to_json(set)["fiducial_points"], three_fiducials);
+  EXPECT_EQ(to_json(set)["fiducials"], 3);
+  const json replaced = to_json(*with_registration(set, {{"registration", turned(0.2)}}));
+  EXPECT_EQ(replaced["fiducial_points"], json::array());
+}
+
+TEST(Targeting, ACovarianceBelongsToTheTargetPointThatItCameWith) {
+  const json covariance{0.04, 0.01, 0, 0.01, 0.09, 0, 0, 0, 0.16};
+  const Targeting set =
+      *with_target({}, {{"target_point", {1, 2, 3}}, {"target_covariance_mm2", covariance}});
+  EXPECT_EQ(to_json(stored_targeting(to_stored(set)).value())["target_covariance_mm2"], covariance);
+  EXPECT_FALSE(with_target(set, {{"target_point", {1, 2, 4}}})->target_covariance_mm2);
+  EXPECT_TRUE(with_target(set, {{"entry_point", {1, 2, 4}}})->target_covariance_mm2);
+  EXPECT_FALSE(without_target(set, json::object())->target_covariance_mm2);
+}
+
+TEST(Targeting, WhatIsNoCovarianceIsRefused) {
+  const json wrong[] = {{1, 0.5, 0, 0, 1, 0, 0, 0, 1},
+                        {1, 2, 0, 2, 1, 0, 0, 0, 1},
+                        {-1, 0, 0, 0, 1, 0, 0, 0, 1},
+                        {20000, 0, 0, 0, 1, 0, 0, 0, 1},
+                        {1, 0, 0, 0, 1, 0, 0, 0}};
+  for (const json& each : wrong) {
+    const auto set = with_target({}, {{"target_point", {1, 2, 3}}, {"target_covariance_mm2", each}});
+    ASSERT_FALSE(set) << each;
+    EXPECT_EQ(set.error().field, "target_covariance_mm2");
+  }
+  const json identity{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  EXPECT_EQ(with_target({}, {{"target_covariance_mm2", identity}}).error().field, "target_point");
+}
+
 json planned(const json& list) { return {{"planned_targets", list}}; }
 
 const json first_core{{"name", "core 1"}, {"entry_point", {1, 2, 3}}, {"target_point", {4, 5, 6.5}}};
@@ -221,8 +258,9 @@ TEST(Targeting, APlannedTargetThatIsWrongIsNamed) {
 
 TEST(Targeting, AFitThatCannotBeIsRefused) {
   const std::pair<const char*, json> wrong[] = {
-      {"residual_mm", -0.1}, {"residual_mm", 1000.1}, {"residual_mm", "far"}, {"residual_mm", json()},
-      {"fiducials", 2},      {"fiducials", 1001},     {"fiducials", 3.5},     {"fiducials", true}};
+      {"residual_mm", -0.1},   {"residual_mm", 1000.1}, {"residual_mm", "far"},
+      {"residual_mm", json()}, {"fiducials", 2},        {"fiducials", 1001},
+      {"fiducials", 3.5},      {"fiducials", true},     {"fiducial_points", {{0, 0, 0}, {50, 0, 0}}}};
   for (const auto& [name, value] : wrong) {
     const json body{{"registration", turned(0.1)}, {name, value}};
     const auto set = with_registration({}, body);

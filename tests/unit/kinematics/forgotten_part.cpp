@@ -13,6 +13,7 @@ class Forgetful final : public Kinematics {
   KinematicsResult<Pose> zframe_from_treatment(std::span<const double>) const override {
     return Pose::Identity();
   }
+  KinematicsResult<Jacobian> jacobian(std::span<const double>) const override { return Jacobian(); }
   Positions positions_for(const Eigen::Vector3d&, const Eigen::Vector3d&, double) const override {
     return std::vector<double>();
   }

@@ -106,7 +106,7 @@ TEST(Manipulability, vanishes_where_the_yaw_axis_meets_the_probe_axis) {
 }
 
 TEST(Manipulability, characteristic_length_without_sense_is_refused) {
-  const auto jacobian = *neuro().jacobian({});
+  const auto jacobian = *neuro().jacobian(NeuroJoints{});
   for (const double bad : {0.0, -1.0, 1e5, std::nan("")}) {
     EXPECT_EQ(manipulability(jacobian, neuro_joint_fields, bad).error().quantity, "characteristic_length_mm");
   }

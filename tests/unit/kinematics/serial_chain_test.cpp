@@ -103,6 +103,32 @@ TEST(SerialChain, forward_agrees_with_the_product_of_its_matrices) {
   }
 }
 
+TEST(SerialChain, jacobian_agrees_with_central_differences_in_mm_and_rad) {
+  constexpr double moved = 1e-5;
+  std::mt19937_64 generator(9);
+  const auto expect_agreement = [&](const KinematicsPtr& chain, const std::vector<double>& joints) {
+    const Jacobian jacobian = chain->jacobian(joints).value();
+    ASSERT_EQ(jacobian.cols(), static_cast<Eigen::Index>(joints.size()));
+    for (std::size_t joint = 0; joint < joints.size(); ++joint) {
+      std::vector<double> before = joints;
+      std::vector<double> after = joints;
+      before[joint] -= moved;
+      after[joint] += moved;
+      const Pose from = *chain->zframe_from_treatment(before);
+      const Pose to = *chain->zframe_from_treatment(after);
+      const Eigen::Matrix3d turn = to.linear() * from.linear().transpose();
+      Eigen::Matrix<double, 6, 1> motion;
+      motion << to.translation() - from.translation(),
+          Vector3d(turn(2, 1) - turn(1, 2), turn(0, 2) - turn(2, 0), turn(1, 0) - turn(0, 1)) / 2.0;
+      EXPECT_LE((jacobian.col(static_cast<Eigen::Index>(joint)) - motion / (2.0 * moved)).norm(), 1e-6);
+    }
+  };
+  for (int sample = 0; sample < 100; ++sample) {
+    expect_agreement(gantry(), drawn(generator, gantry_ranges));
+    expect_agreement(arm(), drawn(generator, arm_ranges));
+  }
+}
+
 TEST(SerialChain, inverse_of_a_path_agrees_with_the_closed_form) {
   std::mt19937_64 generator(2);
   for (int sample = 0; sample < 300; ++sample) {

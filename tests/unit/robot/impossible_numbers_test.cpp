@@ -32,6 +32,7 @@ const std::map<std::string, std::vector<std::string>> impossible{
     {"kinematics.max_separation_mm", {"0", "-1", "1001"}},
     {"kinematics.driver_to_rcm_mm", {"0", "-1", "1001"}},
     {"kinematics.home_rcm_mm", {"-1001", "1001"}},
+    {"kinematics.calibration_mm", {"-0.1", "100.1"}},
     {"kinematics.lower_height_mm", {"-1001", "1001"}},
     {"kinematics.upper_height_mm", {"-1001", "1001"}},
     {"kinematics.stage_distance_mm", {"0", "-1", "1001"}},

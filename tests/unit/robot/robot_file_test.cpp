@@ -67,6 +67,14 @@ TEST(RobotFile, neuro_reads_as_written) {
 
 TEST(RobotFile, reading_twice_gives_equal_axes) { EXPECT_EQ(test::neuro().axes, test::neuro().axes); }
 
+TEST(RobotFile, what_calibration_leaves_is_not_stated_unless_the_file_does) {
+  EXPECT_EQ(test::neuro().calibration_mm, std::nullopt);
+  const auto robot =
+      parse_robot(test::neuro_with("[kinematics]\n", "[kinematics]\ncalibration_mm = 0.25\n"), "neuro.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  EXPECT_EQ(robot->calibration_mm, 0.25);
+}
+
 TEST(RobotFile, milliseconds_become_periods_of_the_robot) {
   const auto robot = parse_robot(test::neuro_with("period_us = 1000", "period_us = 500"), "fast.toml");
   ASSERT_TRUE(robot) << robot.error().message();

@@ -50,6 +50,7 @@ export type Case = Schemas["Case"];
 export type Targeting = Schemas["Targeting"];
 export type AlignmentView = Schemas["AlignmentView"];
 export type Alignment = Schemas["Alignment"];
+export type ErrorBudget = Schemas["ErrorBudget"];
 export type TargetChange = Schemas["TargetChange"];
 export type RegistrationChange = Schemas["RegistrationChange"];
 export type TargetingHistory = Schemas["TargetingHistory"];

@@ -1721,6 +1721,8 @@ export interface components {
                 desired: number[];
                 reachable: number[];
                 deviation: components["schemas"]["Deviation"];
+                error_budget: components["schemas"]["ErrorBudget"] | null;
+                error_budget_problem: components["schemas"]["TargetingProblem"] | null;
             } | null;
             /** @enum {string} */
             kind: "move" | "home" | "path" | "sweep" | "biopsy";
@@ -2217,8 +2219,12 @@ export interface components {
             residual_mm: number | null;
             /** @description By how many it was found. */
             fiducials: number | null;
+            /** @description Where they were in the scanner; empty where its sender did not say so. */
+            fiducial_points: number[][];
             entry_point: number[] | null;
             target_point: number[] | null;
+            /** @description Of the target point, 9 numbers; null where its sender did not say so. */
+            target_covariance_mm2: number[] | null;
             planned_targets: components["schemas"]["PlannedTarget"][];
             /** @description A */
             treatment_to_tip_offset: number;
@@ -2311,6 +2317,31 @@ export interface components {
             within_tolerance: boolean;
             /** @description D + insertion - C; the NeuroRobot's alone, and null where these offsets leave no length. */
             cannula_length_mm: number | null;
+            error_budget: components["schemas"]["ErrorBudget"] | null;
+            /** @description Why there is none: SINGULAR near a singular pose, or by fiducials that lie nearly on a line. */
+            error_budget_problem: components["schemas"]["TargetingProblem"] | null;
+        };
+        /** @description How far treatment point and tip may be from where the reachable pose puts them, with a probability of 95 %; in the scanner's frame (RAS). Bending of the needle, drag of tissue and motion of the patient are not in it. */
+        ErrorBudget: {
+            treatment: components["schemas"]["ErrorEllipsoid"];
+            tip: components["schemas"]["ErrorEllipsoid"];
+            /** @description Half the width of each in the direction of the longest half axis: their squares add up to its square. One that is not stated counts as 0, and the whole is the least that it may be. */
+            contributions: {
+                /** @enum {string} */
+                source: "registration" | "encoder" | "play" | "calibration" | "image";
+                treatment_mm: number;
+                tip_mm: number;
+                /** @description Why it counts as 0; null of one that is stated. */
+                not_stated: string | null;
+            }[];
+        };
+        ErrorEllipsoid: {
+            centre_mm: number[];
+            /** @description The longest first. */
+            half_axes_mm: number[];
+            /** @description Of the half axes: three unit vectors, one after the other. */
+            directions: number[];
+            covariance_mm2: number[];
         };
         Deviation: {
             offset_mm: number[];
@@ -2335,6 +2366,8 @@ export interface components {
             residual_mm?: number;
             /** @description By how many it was found, if that is known. */
             fiducials?: number;
+            /** @description Where they were in the scanner, RAS, mm, if that is known: three at least, or none. With `residual_mm` they give the error of the registration at the target. */
+            fiducial_points?: components["schemas"]["Point"][];
             /** @description Sets it although it can hardly be right (IMPLAUSIBLE): where the robot file does not expect it, the identity, or of a residual that is too large. Audited, and shown for as long as it is in force. */
             override_reason?: string;
         };
@@ -2359,6 +2392,8 @@ export interface components {
         TargetChange: {
             entry_point?: components["schemas"]["Point"];
             target_point?: components["schemas"]["Point"];
+            /** @description Of `target_point`, with which it comes: symmetric, without a negative eigenvalue, RAS. It goes with the next target point. */
+            target_covariance_mm2?: number[];
             treatment_to_tip_offset?: components["schemas"]["Offset"];
             robot_to_entry_offset?: components["schemas"]["Offset"];
             cannula_to_treatment_offset?: components["schemas"]["Offset"];

@@ -7,6 +7,7 @@ import { isVerdict } from "../../state/notice";
 import { proposalHash } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { localDate, localTime } from "../../units/time";
+import { errorBudgetWords } from "./errorBudget";
 import { ProfilePlots } from "./ProfilePlots";
 import { ProposalCommands, StateChip, sourceWord, WaitingWish, Wish } from "./ProposalParts";
 import { progressOf } from "./progress";
@@ -42,7 +43,7 @@ export function ProposalDetail({ proposal }: { readonly proposal: Proposal }) {
       )}
       {plan !== null && (
         <>
-          <Checks plan={plan} />
+          <Checks plan={plan} aim={proposal.aim} />
           <section className="detail-part" aria-label="Profile">
             <h3>Profile against limits</h3>
             <ProfilePlots profile={plan.profile} />
@@ -140,7 +141,7 @@ const outcomes: Record<ProposalPlan["checks"][number]["outcome"], { shape: strin
 };
 
 /** By name, in the order in which they were made; the first that fails is the refusal. */
-function Checks({ plan }: { readonly plan: ProposalPlan }) {
+function Checks({ plan, aim }: { readonly plan: ProposalPlan; readonly aim: Proposal["aim"] }) {
   return (
     <section className="detail-part" aria-label="Checks">
       <h3>Checks</h3>
@@ -164,6 +165,7 @@ function Checks({ plan }: { readonly plan: ProposalPlan }) {
           </li>
         ))}
       </ol>
+      {aim !== null && <p className="plan-words">Error of the reachable pose: {errorBudgetWords(aim)}</p>}
     </section>
   );
 }

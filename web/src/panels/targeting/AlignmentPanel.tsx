@@ -11,6 +11,7 @@ import { useConsole } from "../../state/store";
 import type { Asked } from "../../state/usePolled";
 import type { AxisFrame } from "../../stream/decode";
 import { formatCounts, formatNumber } from "../../units/units";
+import { errorBudgetWords } from "../proposals/errorBudget";
 import { ProposalCommands } from "../proposals/ProposalParts";
 import { type AxisLine, axisLines, hindrances } from "./alignment";
 import { fixed } from "./numbers";
@@ -130,6 +131,9 @@ function Propose({ alignment, retracts }: ProposeProps) {
       )}
       {alignment !== null && (
         <p className={isMissed ? "clamped" : "muted"}>The reachable pose misses the desired one by {miss}.</p>
+      )}
+      {alignment !== null && (
+        <p className="muted">Error of the reachable pose: {errorBudgetWords(alignment)}</p>
       )}
       {alignment?.cannula_length_mm != null && (
         <p className="muted">Length of the cannula: {fixed(alignment.cannula_length_mm, 2)} mm</p>

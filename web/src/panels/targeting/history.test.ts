@@ -40,6 +40,19 @@ describe("changeWords", () => {
     expect(changeWords({ old: fit, new: none })).toEqual([]);
   });
 
+  it("say that the accuracy of images changed", () => {
+    const one = [0.1, 0, 0, 0, 0.1, 0, 0, 0, 0.1];
+    expect(
+      changeWords({ old: { target_covariance_mm2: null }, new: { target_covariance_mm2: one } }),
+    ).toEqual(["Covariance of the target: set"]);
+    expect(
+      changeWords({ old: { target_covariance_mm2: one }, new: { target_covariance_mm2: null } }),
+    ).toEqual(["Covariance of the target: none"]);
+    expect(changeWords({ old: { fiducial_points: [] }, new: { fiducial_points: [[], [], []] } })).toEqual([
+      "Points of its fiducials: 3",
+    ]);
+  });
+
   it("say how many targets are planned", () => {
     expect(changeWords({ old: { planned_targets: [] }, new: { planned_targets: [{}, {}] } })).toEqual([
       "Planned targets: 2",

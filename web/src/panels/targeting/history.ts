@@ -13,6 +13,9 @@ export function changeWords({ old, new: set }: Pick<Change, "old" | "new">): str
   return [
     ...registrationWords(old, set),
     ...[...points, ...offsets].flatMap((name) => aimWords(name, old, set)),
+    ...(set.target_covariance_mm2 === undefined
+      ? []
+      : [`Covariance of the target: ${Array.isArray(set.target_covariance_mm2) ? "set" : "none"}`]),
     ...(Array.isArray(set.planned_targets) ? [`Planned targets: ${set.planned_targets.length}`] : []),
   ];
 }
@@ -25,6 +28,8 @@ type RegistrationName =
   | "ignore_registration_rotation"
   | "residual_mm"
   | "fiducials"
+  | "fiducial_points"
+  | "target_covariance_mm2"
   | "planned_targets";
 
 function aimWords(name: AimName, old: Fields, set: Fields): string[] {
@@ -45,6 +50,8 @@ function registrationWords(old: Fields, set: Fields): string[] {
     words.push(`Rotation of the registration ${ignores ? "ignored" : "used"}`);
   const fit = fitWords(set);
   if (fit !== "") words.push(fit);
+  if (Array.isArray(set.fiducial_points))
+    words.push(`Points of its fiducials: ${set.fiducial_points.length}`);
   return words;
 }
 

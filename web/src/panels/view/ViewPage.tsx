@@ -10,7 +10,17 @@ import { usePolled } from "../../state/usePolled";
 import { LivePage } from "../cover/LivePage";
 import { usePlan } from "../proposals/usePlan";
 import { type Preset, presets } from "./cameras";
-import { type Cells, cellsOf, distance, type Scene, sceneOf, wayOf, wordsOf, wordsOfCells } from "./scene";
+import {
+  type Cells,
+  cellsOf,
+  distance,
+  type Scene,
+  sceneOf,
+  wayOf,
+  wordsOf,
+  wordsOfCells,
+  wordsOfEllipsoid,
+} from "./scene";
 import { type Inks, Stage3d } from "./stage3d";
 import "./view.css";
 
@@ -238,6 +248,9 @@ function Legend({ scene, cells }: LegendProps) {
           </li>
         )}
         {cells !== null && <li data-ink="reach">▪ {wordsOfCells(cells)} mm</li>}
+        {scene.ellipsoid !== null && (
+          <li data-ink="ghost">● {wordsOfEllipsoid(scene.ellipsoid)}: where the treatment point may be</li>
+        )}
         <li data-ink="entry">◆ entry</li>
         <li data-ink="target">● target</li>
         <li>axes: x red, y green, z blue; large: {scene.axes.map(({ name }) => name).join(", ")}</li>

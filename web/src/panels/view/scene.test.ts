@@ -79,6 +79,25 @@ describe("sceneOf", () => {
     ]);
     expect(scene.missing).toEqual([]);
   });
+
+  it("has the 95 % ellipsoid of the reachable pose, in words as well", () => {
+    const treatment = {
+      centre_mm: [1, 2, 3],
+      half_axes_mm: [1.3, 0.9, 0.5],
+      directions: [0, 1, 0, 1, 0, 0, 0, 0, -1],
+      covariance_mm2: [],
+    };
+    const alignment = { desired: identity, reachable: pose, error_budget: { treatment } };
+    const view = { ...nothing, alignment: alignment as unknown as AlignmentView["alignment"] };
+    const scene = sceneOf(targeting, view);
+    expect(scene.ellipsoid).toEqual({
+      centre: [1, 2, 3],
+      halfAxesMm: [1.3, 0.9, 0.5],
+      directions: treatment.directions,
+    });
+    expect(wordsOf(scene)).toContain("95 % ellipsoid with half axes of 1.30, 0.90, 0.50 mm");
+    expect(sceneOf(targeting, nothing).ellipsoid).toBeNull();
+  });
 });
 
 describe("the ghost of a proposal", () => {

@@ -2,7 +2,7 @@
  * What the 3D view shows, in the scanner's frame (RAS), mm, or in the robot's own while no registration is valid: poses and
  * points that the app knows, and nothing else. A pose is a homogeneous matrix, row by row.
  */
-import type { AlignmentView, BodyPart, ProposalPlan, Reach, Targeting } from "../../api/client";
+import type { AlignmentView, BodyPart, ErrorBudget, ProposalPlan, Reach, Targeting } from "../../api/client";
 
 export type Point = readonly [x: number, y: number, z: number];
 
@@ -47,12 +47,23 @@ export interface Ghost {
   readonly path: readonly Point[];
 }
 
+/** Where the treatment point is with a probability of 95 %, as far as its error is known. */
+export interface Ellipsoid {
+  readonly centre: Point;
+  /** The longest first. */
+  readonly halfAxesMm: Point;
+  /** Unit vectors along the half axes, one after the other. */
+  readonly directions: readonly number[];
+}
+
 export interface Scene {
   readonly bodies: readonly Body[];
   readonly ghost: Ghost | null;
   readonly axes: readonly Axes[];
   readonly probes: readonly Probe[];
   readonly marks: readonly Mark[];
+  /** Of the reachable pose; null where it has no error budget. */
+  readonly ellipsoid: Ellipsoid | null;
   /** From the current treatment point to the desired one. */
   readonly deviation: readonly [Point, Point] | null;
   /** What is not shown, and why. */
@@ -112,6 +123,7 @@ export function sceneOf(
       registration === null
         ? []
         : [...markOf("entry", targeting.entry_point), ...markOf("target", targeting.target_point)],
+    ellipsoid: ellipsoidOf(alignment?.error_budget ?? null),
     deviation:
       current === null || alignment === null ? null : [along(current, 0), along(alignment.desired, 0)],
     missing: [
@@ -137,6 +149,17 @@ function bodyOf(kind: Body["kind"], parts: readonly BodyPart[]): Body {
     kind,
     parts: parts.map(({ name, from, to }) => ({ name, from: pointAt(from), to: pointAt(to) })),
   };
+}
+
+function ellipsoidOf(budget: ErrorBudget | null): Ellipsoid | null {
+  if (budget === null) return null;
+  const { centre_mm, half_axes_mm, directions } = budget.treatment;
+  return { centre: pointAt(centre_mm), halfAxesMm: pointAt(half_axes_mm), directions };
+}
+
+/** Its half axes. */
+export function wordsOfEllipsoid({ halfAxesMm }: Ellipsoid): string {
+  return `95 % ellipsoid with half axes of ${halfAxesMm.map((mm) => mm.toFixed(2)).join(", ")} mm`;
 }
 
 function pointAt([x = 0, y = 0, z = 0]: readonly number[]): Point {
@@ -243,7 +266,8 @@ export function wordsOf(scene: Scene): string {
       : [
           `ghost of proposal ${ghost.id}: tip to ${text(ghost.tip)} by a way of ${wayOf(ghost).toFixed(1)} mm`,
         ];
-  return [...probes, ...marks, ...led].join("; ") || "frames alone";
+  const error = scene.ellipsoid === null ? [] : [wordsOfEllipsoid(scene.ellipsoid)];
+  return [...probes, ...error, ...marks, ...led].join("; ") || "frames alone";
 }
 
 /** How far the tip goes. */

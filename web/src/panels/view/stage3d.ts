@@ -36,6 +36,7 @@ import {
   type Body,
   ballAround,
   type Cells,
+  type Ellipsoid,
   type Ghost,
   type Mark,
   type Part,
@@ -133,6 +134,7 @@ export class Stage3d {
       ...(scene.ghost === null ? [] : [ghostOf(scene.ghost, inks)]),
       ...scene.probes.map((probe) => probeOf(probe, inks)),
       ...scene.marks.map((mark) => markOf(mark, inks)),
+      ...(scene.ellipsoid === null ? [] : [ellipsoidOf(scene.ellipsoid, inks)]),
       ...(scene.deviation === null ? [] : [lineOf(scene.deviation, dashed(inks.alarm))]),
     );
     this.scene.add(this.content);
@@ -282,6 +284,17 @@ function markOf({ kind, at }: Mark, inks: Inks): Object3D {
   const cone = new Mesh(new ConeGeometry(MARK_RADIUS_MM, 2 * MARK_RADIUS_MM, 4), material);
   cone.position.set(...at);
   return cone;
+}
+
+/** Over the mark of the target, which may be larger. */
+function ellipsoidOf({ centre, halfAxesMm, directions }: Ellipsoid, inks: Inks): Object3D {
+  const look = { color: inks.ghost, transparent: true, opacity: 0.5, depthTest: false };
+  const ball = new Mesh(new SphereGeometry(1, 24, 16), new MeshStandardMaterial(look));
+  const columns = halfAxesMm.map((mm, axis) =>
+    new Vector3().fromArray(directions, 3 * axis).multiplyScalar(mm),
+  ) as [Vector3, Vector3, Vector3];
+  ball.applyMatrix4(new Matrix4().makeBasis(...columns).setPosition(...centre));
+  return ball;
 }
 
 function ballAt(at: Point, radiusMm: number, material: Material): Object3D {

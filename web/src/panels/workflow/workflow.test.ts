@@ -24,7 +24,9 @@ const at = (yaw: number, insertion: number): AxisNow[] => [axis(yaw), axis(0), a
 
 const pose = (x: number): number[] => [1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
 const deviation = { offset_mm: [0, 0, 0], distance_mm: 0.02, angle_deg: 0.01 };
+const noBudget = { error_budget: null, error_budget_problem: null };
 const alignment = {
+  ...noBudget,
   ...{ desired: pose(1), reachable: pose(1), reachable_tip: [0, 0, 0], clamped: [], cannula_length_mm: null },
   setpoints: {
     yaw: { counts: -50, position: -5 },
@@ -66,7 +68,7 @@ const proposal = (more: Partial<Proposal>): Proposal =>
     ...more,
   }) as Proposal;
 const toTarget = (state: Proposal["state"], more: Partial<Proposal> = {}): Proposal =>
-  proposal({ state, aim: { desired: pose(1), reachable: pose(1), deviation }, ...more });
+  proposal({ state, aim: { desired: pose(1), reachable: pose(1), deviation, ...noBudget }, ...more });
 
 const nowOf = (situation: Situation): StepName | undefined =>
   stepsOf(situation).find(({ state }) => state === "now")?.name;
@@ -147,7 +149,9 @@ describe("what a step claims", () => {
   });
 
   it("is no review by a motion to another target", () => {
-    const elsewhere = toTarget("checked", { aim: { desired: pose(2), reachable: pose(2), deviation } });
+    const elsewhere = toTarget("checked", {
+      aim: { desired: pose(2), reachable: pose(2), deviation, ...noBudget },
+    });
     expect(stepIn({ ...ready, proposals: [elsewhere] }, "review").state).not.toBe("done");
   });
 

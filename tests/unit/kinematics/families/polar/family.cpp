@@ -38,6 +38,15 @@ class Polar final : public Kinematics {
       return pose;
     });
   }
+  KinematicsResult<Jacobian> jacobian(std::span<const double> positions) const override {
+    return zframe_from_treatment(positions).map([&](const Pose& pose) {
+      const Eigen::Vector3d along = pose.linear().col(2);
+      Jacobian jacobian = Jacobian::Zero(6, 2);
+      jacobian.col(0) << positions[1] * Eigen::Vector3d::UnitZ().cross(along), Eigen::Vector3d::UnitZ();
+      jacobian.col(1).head<3>() = along;
+      return jacobian;
+    });
+  }
   KinematicsResult<std::vector<double>> positions_for(const Eigen::Vector3d& entry,
                                                       const Eigen::Vector3d& target,
                                                       double /*rotation_rad*/) const override {
