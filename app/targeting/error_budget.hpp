@@ -10,11 +10,13 @@
  *                   (deadband + 1/2)²/3 counts²
  *     play          J D Jᵀ; the load is anywhere within the lost motion of b counts: variance b²/12 counts²
  *     registration  σ²/N I + [r]ₓ W [r]ₓᵀ; r from the centroid of the N fiducials to the point, W along their
- *                   principal axes σ²/(N fₖ²), fₖ their root mean square distance from the axis k. Its trace
- * is the TRE² of J. M. Fitzpatrick, J. B. West, C. R. Maurer: Predicting error in rigid-body point-based
- * registration, IEEE Trans. Med. Imaging 17(5), 1998. The error of a fiducial is the same in all directions,
- * 3σ² = FRE² N/(N - 2) by the residual FRE calibration   s² I, s as the robot's file states it image as
- * whoever sets the target states it
+ *                   principal axes σ²/(N fₖ²), fₖ their root mean square distance from the axis k
+ *     calibration   s² I, s as the robot's file states it
+ *     image         as whoever sets the target states it
+ *
+ * The trace of the registration's part is the TRE² of J. M. Fitzpatrick, J. B. West, C. R. Maurer: Predicting
+ * error in rigid-body point-based registration, IEEE Trans. Med. Imaging 17(5), 1998. The error of a fiducial
+ * is the same in all directions: 3σ² = FRE² N/(N - 2), by the residual FRE.
  *
  * J carries the motion of the axes to the point: the Jacobian of the treatment point, at the tip with its
  * lever. The parts are taken for Gaussian when the ellipsoid is drawn. Bending of the needle, drag of tissue,

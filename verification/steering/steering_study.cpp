@@ -9,7 +9,9 @@
 #include <iostream>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "membrane_experiment.hpp"
@@ -113,16 +115,27 @@ json steering(Seeds seeds) {
     result[name]["even rotation"] = tip_errors(world, Steering::spinning, seeds);
     result[name]["compensation"] = tip_errors(world, Steering::averaged, seeds);
   }
-  for (const double share : {0.25, 0.5, 1.0, 2.0}) {
-    std::map<std::string, SteeringWorld> worlds;
-    worlds["breathing"].imager.breathing_mm = 3.0 * share;
-    worlds["tip image biased"].imager.tip_bias_mm = 2.0 * share;
-    worlds["target pushed ahead"].dragged_share = 0.06 * share;
-    worlds["bevel off"].bevel_rad = 0.349 * share;
-    for (const auto& [name, world] : worlds) {
-      json row = tip_errors(world, Steering::averaged, seeds);
-      row["share"] = share;
-      result[name].push_back(std::move(row));
+  return result;
+}
+
+/// What nobody tells the controller, in parts and more of what may be met.
+json disturbed(Seeds seeds) {
+  json result = json::array();
+  for (const double part : {0.25, 0.5, 1.0, 2.0}) {
+    std::map<std::string, std::pair<SteeringWorld, double>> worlds;
+    const auto world = [&](const char* name, double size) -> SteeringWorld& {
+      worlds[name].second = part * size;
+      return worlds[name].first;
+    };
+    world("breathing, mm", 3.0).imager.breathing_mm = part * 3.0;
+    world("tip image beside the tip, mm", 2.0).imager.tip_bias_mm = part * 2.0;
+    world("target pushed ahead, % of the depth", 6.0).dragged_share = part * 0.06;
+    world("bevel off, degrees", 20.0).bevel_rad = part * std::numbers::pi / 9;
+    for (const auto& [name, made] : worlds) {
+      json row = tip_errors(made.first, Steering::averaged, seeds);
+      row["disturbance"] = name;
+      row["size"] = made.second;
+      result.push_back(std::move(row));
     }
   }
   return result;
@@ -178,8 +191,10 @@ int main(int argc, char** argv) {
     std::cerr << "seeds go from 1 to 1000000, the first before the last\n";
     return 2;
   }
-  const json result{
-      {"seeds", {seeds.first, seeds.last}}, {"steering", steering(seeds)}, {"membranes", detection(seeds)}};
+  const json result{{"seeds", {seeds.first, seeds.last}},
+                    {"steering", steering(seeds)},
+                    {"disturbed", disturbed(seeds)},
+                    {"membranes", detection(seeds)}};
   std::cout << result.dump(1) << "\n";
   return 0;
 }
