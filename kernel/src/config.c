@@ -88,16 +88,17 @@ static ilk_config_error_t geometry_error(const ilk_axis_config_t *axis) {
 
 static ilk_config_error_t drive_error(const ilk_axis_config_t *axis, uint32_t us) {
   const bool waves = axis->card == (uint32_t)ILK_CARD_HIGH_FREQUENCY;
-  const uint64_t awake = (uint64_t)axis->dead_zone_drive + 1u;
-  const uint64_t tenth = ((9u * (uint64_t)axis->dead_zone_drive) + axis->max_drive) / 10u;
+  const uint64_t dead = axis->dead_zone_drive;
+  const uint64_t unhomed = axis->unhomed_max_drive;
   const uint64_t coast = axis->coast_counts;
   const uint32_t full = axis->full_speed_counts_per_s;
   const uint64_t fastest = travel_in(full, 1u, us) + axis->noise_counts;
   const uint32_t range = range_of(axis);
   ilk_config_error_t error = ILK_CONFIG_ERROR_NONE;
   need(&error, within(axis->max_drive, 1u, ilk_card_max_drive(axis->card)), ILK_CONFIG_ERROR_MAX_DRIVE);
-  need(&error, axis->dead_zone_drive <= (axis->max_drive / 5u), ILK_CONFIG_ERROR_UNHOMED_DRIVE);
-  need(&error, within(axis->unhomed_max_drive, awake, tenth), ILK_CONFIG_ERROR_UNHOMED_DRIVE);
+  need(&error, (5u * dead) <= axis->max_drive, ILK_CONFIG_ERROR_UNHOMED_DRIVE);
+  need(&error, unhomed > dead, ILK_CONFIG_ERROR_UNHOMED_DRIVE);
+  need(&error, (10u * unhomed) <= ((9u * dead) + axis->max_drive), ILK_CONFIG_ERROR_UNHOMED_DRIVE);
   need(&error, within(axis->max_amplitude, flag_of(waves), waves ? ILK_AMPLITUDE_MAX : 0u),
        ILK_CONFIG_ERROR_AMPLITUDE);
   need(&error, axis->home_amplitude <= axis->max_amplitude, ILK_CONFIG_ERROR_AMPLITUDE);

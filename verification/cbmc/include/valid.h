@@ -82,9 +82,9 @@ static bool valid_drives(const ilk_axis_config_t* axis, uint32_t us) {
   const uint32_t full = axis->full_speed_counts_per_s;
   return between(axis->max_drive, 1, largest_drive_of(axis->card)) &&
          (axis->unhomed_max_drive > axis->dead_zone_drive) &&
-         ((5 * (int64_t)axis->dead_zone_drive) <= (int64_t)axis->max_drive) &&
-         ((10 * ((int64_t)axis->unhomed_max_drive - axis->dead_zone_drive)) <=
-          ((int64_t)axis->max_drive - axis->dead_zone_drive)) &&
+         ((5u * (uint64_t)axis->dead_zone_drive) <= axis->max_drive) &&
+         ((10u * (uint64_t)axis->unhomed_max_drive) <=
+          ((9u * (uint64_t)axis->dead_zone_drive) + axis->max_drive)) &&
          between(axis->max_amplitude, waves ? 1 : 0, waves ? 255 : 0) &&
          (axis->home_amplitude <= axis->max_amplitude) && between(full, 1, 100000000) &&
          ((way_in(1u, us, full) + axis->noise_counts) <= axis->max_delta_counts) &&
