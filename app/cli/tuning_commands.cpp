@@ -19,6 +19,30 @@ using Json = nlohmann::ordered_json;
 
 Failure simulation_refused(const std::string& why) { return {ExitCode::refused, why}; }
 
+bool is_same(const std::filesystem::path& one, const std::filesystem::path& other) {
+  std::error_code ignored;
+  return !one.empty() && !other.empty() &&
+         std::filesystem::weakly_canonical(one, ignored) == std::filesystem::weakly_canonical(other, ignored);
+}
+
+/** A file that is read is overwritten by no other: only `write` may be the robot's own. */
+Result<void> spares(const SimulatedAxis& options, const std::filesystem::path& csv,
+                    const std::filesystem::path& robot, const std::filesystem::path& plant) {
+  const auto refuse = [](const std::filesystem::path& file) {
+    return failed(ExitCode::usage,
+                  file.string() + " would be overwritten by another file; choose another name");
+  };
+  for (const std::filesystem::path& drawn : {options.svg, csv}) {
+    if (is_same(drawn, robot) || is_same(drawn, plant) || is_same(drawn, options.write)) {
+      return refuse(drawn);
+    }
+  }
+  if (is_same(options.svg, csv)) {
+    return refuse(csv);
+  }
+  return is_same(options.write, plant) ? refuse(plant) : Result<void>();
+}
+
 /** A robot, as the kernel takes it, on its simulated hardware. */
 struct Simulated {
   std::filesystem::path file;
@@ -27,7 +51,8 @@ struct Simulated {
   plant::Parameters plant;
 };
 
-Result<Simulated> simulated(const SimulatedAxis& options, const Installation& installation) {
+Result<Simulated> simulated(const SimulatedAxis& options, const std::filesystem::path& csv,
+                            const Installation& installation) {
   Simulated made{};
   return installation.robot(options.robot)
       .and_then([&](const std::filesystem::path& file) {
@@ -43,7 +68,9 @@ Result<Simulated> simulated(const SimulatedAxis& options, const Installation& in
         return options.plant.empty() ? installation.plant(made.robot.name) : options.plant;
       })
       .and_then([&](const std::filesystem::path& file) {
-        return plant::load_parameters(file, made.config).map_error(simulation_refused);
+        return spares(options, csv, made.file, file).and_then([&] {
+          return plant::load_parameters(file, made.config).map_error(simulation_refused);
+        });
       })
       .map([&](const plant::Parameters& parameters) {
         made.plant = parameters;
@@ -170,7 +197,7 @@ Result<Json> step_with(const TuneOptions& options, const Simulated& on,
 }  // namespace
 
 Result<void> tune(const TuneOptions& options, const Installation& installation, std::ostream& output) {
-  return simulated(options, installation).and_then([&](const Simulated& on) {
+  return simulated(options, options.csv, installation).and_then([&](const Simulated& on) {
     return searched(options, on).and_then([&](const std::optional<FoundGains>& found) {
       return step_with(options, on, found).and_then([&](Json figures) {
         const std::string& axis = options.step.axis;
@@ -189,7 +216,7 @@ Result<void> tune(const TuneOptions& options, const Installation& installation, 
 
 Result<void> identify(const IdentifyOptions& options, const Installation& installation,
                       std::ostream& output) {
-  return simulated(options, installation).and_then([&](const Simulated& on) {
+  return simulated(options, {}, installation).and_then([&](const Simulated& on) {
     return interlock::identify(on.robot, on.config, on.plant, options.axis, options.seed)
         .map_error(simulation_refused)
         .and_then([&](const Identified& measured) {

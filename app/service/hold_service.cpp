@@ -19,7 +19,7 @@ tl::expected<void, Problem> HoldService::signal(const HoldSource& source, const 
   BreathingGate& gate = holds_.gate;
   const Moment now = control_.view().moment(came);
   const bool is_valid = gate.signal.held() && !gate.signal.overdue(now);
-  if (is_valid && source_ && !source_->is(source)) {
+  if (signal.open && is_valid && source_ && !source_->is(source)) {
     return fail({.status = Status::conflict,
                  .code = "GATE_SOURCE",
                  .detail = "The breathing gate takes its signal from " + source_->name + ".",

@@ -46,7 +46,8 @@ class HoldService {
 
   /**
    * A signal of the breathing gate, valid from when it came. It is kept whether or not the gate is in use.
-   * 409 GATE_SOURCE while the newest one of another source is valid.
+   * 409 GATE_SOURCE for one that opens it, while the newest one of another source is valid; whoever says
+   * "hold" is believed.
    */
   tl::expected<void, Problem> signal(const HoldSource& source, const igtl::GateSignal& signal,
                                      std::chrono::steady_clock::time_point came);

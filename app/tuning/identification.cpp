@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "chart/time_chart.hpp"
+#include "robot/compile.hpp"
 
 namespace interlock {
 namespace {
@@ -24,6 +25,12 @@ constexpr double longest_way_s = 0.4; /**< at full speed */
 constexpr double noise_s = 5.0;
 constexpr std::int32_t shortest_way_counts = 60;
 constexpr double loop_ticks = 2.0;
+/** Of a stall: what a move that may stand uses up of it, and most, for one that has play to take up. */
+constexpr double half_patience = 0.5;
+constexpr double strong_patience = 0.8;
+/** Of the largest drive; the kernel accepts no wider one. */
+constexpr double widest_dead_zone = 0.2;
+constexpr double dead_zone_step = 0.02;
 
 /** One move at a steady drive. */
 struct Line {
@@ -48,12 +55,11 @@ class Identification {
   Identification(const Axis& axis, const ilk_config_t& config, const plant::Parameters& parameters,
                  std::uint64_t seed)
       : axis_(axis),
-        rules_(config.axis[axis.slot]),
-        period_s_(config.common.period_us * 1e-6),
         config_(config),
+        rules_(config_.axis[axis.slot]),
+        period_s_(config.common.period_us * 1e-6),
         parameters_(parameters),
         seed_(seed) {
-    rig_.emplace(config_, parameters_, seed_, axis_.slot);
     found_.axis = axis.name;
   }
 
@@ -70,28 +76,31 @@ class Identification {
 
  private:
   RigResult<void> ready();
+  RigResult<void> home();
   RigResult<void> watch_noise();
   RigResult<void> go_to_the_start();
   RigResult<void> try_drives();
-  RigResult<Line> move(int direction, std::uint32_t drive, std::int32_t way);
+  RigResult<Line> move_strongly(int direction, std::int32_t way);
+  RigResult<Line> move(int direction, std::uint32_t drive, std::int32_t way, double patience);
   RigResult<void> come_to_rest();
   void fit();
   [[nodiscard]] Line line_of(const std::vector<double>& ways) const;
   [[nodiscard]] std::uint32_t drive_of(double share) const {
     return std::max(1U, static_cast<std::uint32_t>(std::lround(share * rules_.max_drive)));
   }
-  /** Ticks without progress after which an axis stands: half of what the kernel calls a stall. */
-  [[nodiscard]] std::uint32_t patience_at(std::uint32_t drive) const {
+  /** Ticks without progress after which an axis stands: that share of what the kernel calls a stall. */
+  [[nodiscard]] std::uint32_t ticks_until_it_stands(std::uint32_t drive, double patience) const {
     const std::uint64_t effort = std::uint64_t{rules_.stall_effort_ticks} * rules_.max_drive / drive;
-    return static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(rules_.stall_ticks, effort == 0 ? rules_.stall_ticks : effort) / 2);
+    return static_cast<std::uint32_t>(patience *
+                                      static_cast<double>(std::min<std::uint64_t>(
+                                          rules_.stall_ticks, effort == 0 ? rules_.stall_ticks : effort)));
   }
   [[nodiscard]] std::int32_t position() const { return rig_->axis().position_counts; }
 
   const Axis& axis_;
+  ilk_config_t config_;
   const ilk_axis_config_t& rules_;
   double period_s_;
-  const ilk_config_t& config_;
   const plant::Parameters& parameters_;
   std::uint64_t seed_;
   std::optional<StepRig> rig_;
@@ -102,11 +111,34 @@ class Identification {
   Mean strong_speed_;
 };
 
-/** The switch opens when homing backs off, and closes when it comes again, slowly. */
 RigResult<void> Identification::ready() {
+  const RigResult<void> homed = home();
+  if (homed) {
+    return homed;
+  }
+  found_.homing_error = homed.error();
+  const ilk_config_t file = config_;
+  for (double share = dead_zone_step; axis_.homing && share <= widest_dead_zone; share += dead_zone_step) {
+    const double dead_zone = share * axis_.drive.max;
+    if (dead_zone > axis_.drive.dead_zone) {
+      config_ = file;
+      config_.axis[axis_.slot] = compile_axis(with_dead_zone(axis_, dead_zone));
+      config_.crc = ilk_config_crc(&config_);
+      if (home()) {
+        return {};
+      }
+    }
+  }
+  return tl::unexpected(homed.error() + ", before the first move");
+}
+
+/** From power on. The switch opens when homing backs off, and closes when it comes again, slowly. */
+RigResult<void> Identification::home() {
+  rig_.emplace(config_, parameters_, seed_, axis_.slot);
   std::uint32_t reading = 0;
   std::optional<std::uint32_t> opened;
-  const RigResult<void> homed = rig_->make_ready([&](const ilk_axis_t& axis) {
+  found_.hysteresis_counts.reset();
+  return rig_->make_ready([&](const ilk_axis_t& axis) {
     const bool changed = axis.switch_reading != reading;
     reading = axis.switch_reading;
     if (changed && axis.homing_phase == ILK_HOMING_BACK_OFF && !opened) {
@@ -115,13 +147,6 @@ RigResult<void> Identification::ready() {
       found_.hysteresis_counts = std::abs(static_cast<double>(static_cast<std::int32_t>(axis.raw - *opened)));
     }
   });
-  if (homed) {
-    return {};
-  }
-  found_.homing_error = homed.error();
-  found_.hysteresis_counts.reset();
-  rig_.emplace(config_, parameters_, seed_, axis_.slot);
-  return rig_->make_ready_by_hand();
 }
 
 RigResult<void> Identification::watch_noise() {
@@ -154,12 +179,9 @@ RigResult<void> Identification::go_to_the_start() {
   const std::int32_t start = lowest + (highest - lowest - 2 * way_counts_) / 2;
   while (std::abs(start - position()) > way_counts_ / 4) {
     const int direction = start > position() ? 1 : -1;
-    const auto moved = move(direction, drive_of(strong_share), std::abs(start - position()));
+    const auto moved = move_strongly(direction, std::abs(start - position()));
     if (!moved) {
       return tl::unexpected(moved.error());
-    }
-    if (moved->speed_counts_per_s == 0.0) {
-      return tl::unexpected(axis_.name + " does not move at half of its largest drive");
     }
   }
   return {};
@@ -169,9 +191,9 @@ RigResult<void> Identification::try_drives() {
   for (const double share : shares) {
     DriveSpeed speed{.drive = drive_of(share)};
     for (const int direction : {1, -1}) {
-      const auto strong = move(direction, drive_of(strong_share), way_counts_);
-      const auto tried =
-          strong.and_then([&](const Line&) { return move(direction, speed.drive, way_counts_); });
+      const auto strong = move_strongly(direction, way_counts_);
+      const auto tried = strong.and_then(
+          [&](const Line&) { return move(direction, speed.drive, way_counts_, half_patience); });
       if (!tried) {
         return tl::unexpected(tried.error() + ", at drive " + std::to_string(speed.drive));
       }
@@ -189,20 +211,33 @@ RigResult<void> Identification::try_drives() {
   return {};
 }
 
+/** At half of the largest drive, at which it has to move, and has to take up its play before it stalls. */
+RigResult<Line> Identification::move_strongly(int direction, std::int32_t way) {
+  return move(direction, drive_of(strong_share), way, strong_patience)
+      .and_then([&](const Line& line) -> RigResult<Line> {
+        if (line.speed_counts_per_s == 0.0) {
+          return tl::unexpected(axis_.name +
+                                " stands at half of its largest drive for as long as its stall rule lets it: "
+                                "it moves nothing there, or has more play than its file says");
+        }
+        return line;
+      });
+}
+
 /** From rest to rest. It ends when it has gone its way, when it has lasted, or where the axis stands: well
  * before the kernel would call it a stall. */
-RigResult<Line> Identification::move(int direction, std::uint32_t drive, std::int32_t way) {
+RigResult<Line> Identification::move(int direction, std::uint32_t drive, std::int32_t way, double patience) {
   const std::int32_t from = position();
   const std::int32_t target =
       std::clamp(from + direction * (way + static_cast<std::int32_t>(rules_.coast_counts)),
                  axis_.lowest_setpoint_counts(), axis_.highest_setpoint_counts());
-  const std::uint32_t patience = patience_at(drive);
+  const std::uint32_t longest = ticks_until_it_stands(drive, patience);
   const auto progress = static_cast<std::int32_t>(rules_.stall_min_counts + rules_.noise_counts);
   std::vector<double> ways{0.0};
   std::int32_t mark = 0;
   std::uint32_t since_mark = 0;
   std::int32_t gone = 0;
-  while (gone < way && since_mark < patience &&
+  while (gone < way && since_mark < longest &&
          static_cast<double>(ways.size()) * period_s_ < longest_move_s) {
     rig_->move(target, drive);
     if (const RigResult<void> ticked = rig_->tick(); !ticked) {
@@ -227,7 +262,7 @@ RigResult<Line> Identification::move(int direction, std::uint32_t drive, std::in
   if (const RigResult<void> rested = come_to_rest(); !rested) {
     return tl::unexpected(rested.error());
   }
-  Line line = since_mark < patience ? line_of(ways) : Line{};
+  Line line = since_mark < longest ? line_of(ways) : Line{};
   line.coast_counts = static_cast<std::uint32_t>(std::max(0, direction * (position() - last_driven)));
   return line;
 }

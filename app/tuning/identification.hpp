@@ -29,7 +29,7 @@ struct DriveSpeed {
 /** What was measured of one axis. */
 struct Identified {
   std::string axis;
-  std::optional<std::string> homing_error = {}; /**< why it did not home; then it was put there by hand */
+  std::optional<std::string> homing_error = {}; /**< why it did not home with the drives of its file */
   std::uint32_t noise_counts = 0;               /**< peak to peak at rest, in five seconds */
   std::vector<DriveSpeed> speeds;       /**< largest drive first, down to the first at which the axis stood */
   double dead_zone_drive = 0.0;         /**< up to it the axis stands */
@@ -42,15 +42,20 @@ struct Identified {
 };
 
 /**
- * Measures the axis of that name: some fifty moves within its range, at drives from the largest down to where
- * it stands.
+ * Measures the axis of that name: some eighty moves within its range, at drives from the largest down to
+ * where it stands. An axis that does not home with the drives of its file is homed with those of larger and
+ * larger dead zones, up to the largest that the kernel accepts.
  *
- * The error says that the robot has no such axis, that the range of the axis is too short to be measured in,
- * or what ended a move.
+ * The error says that the robot has no such axis, that it homes with no such drive, that its range is too
+ * short to be measured in, that it stands where it has to move, or what ended a move.
  */
 RigResult<Identified> identify(const Robot& robot, const ilk_config_t& config,
                                const plant::Parameters& parameters, const std::string& axis,
                                std::uint64_t seed);
+
+/** The axis with another dead zone: each of its drives is as far from there to the largest as it was before.
+ */
+Axis with_dead_zone(Axis axis, double dead_zone_drive);
 
 /** A number that the file should have in place of another. */
 struct NumberChange {

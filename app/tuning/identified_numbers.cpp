@@ -39,26 +39,10 @@ void take_mechanics(Axis& axis, const Identified& found, double period_s) {
         mechanics.full_speed_counts_per_s * period_s + mechanics.noise_counts + 1);
 }
 
-/** Each drive is as far from the new dead zone to the largest as it was from the old. */
 void take_dead_zone(Axis& axis, const Identified& found) {
-  DriveBounds& drive = axis.drive;
-  const DriveBounds old = drive;
-  const bool is_same = std::abs(found.dead_zone_drive - old.dead_zone) <= same_drive * old.max;
-  if (axis.card == ILK_CARD_HIGH_FREQUENCY || is_same) {
-    return;
-  }
-  drive.dead_zone = whole(found.dead_zone_drive);
-  const auto move = [&](std::uint32_t& number) {
-    const double share = (static_cast<double>(number) - old.dead_zone) / (old.max - old.dead_zone);
-    number = static_cast<std::uint32_t>(drive.dead_zone + share * (drive.max - drive.dead_zone));
-  };
-  move(drive.unhomed_max);
-  if (old.min > old.dead_zone) {
-    move(drive.min);
-  }
-  if (axis.homing) {
-    move(axis.homing->drive);
-    move(axis.homing->slow_drive);
+  const bool is_same = std::abs(found.dead_zone_drive - axis.drive.dead_zone) <= same_drive * axis.drive.max;
+  if (axis.card != ILK_CARD_HIGH_FREQUENCY && !is_same) {
+    axis = with_dead_zone(axis, found.dead_zone_drive);
   }
 }
 
@@ -69,9 +53,11 @@ void take_homing(Axis& axis, const Robot& robot, const Identified& found, double
     return found.full_speed_counts_per_s * (drive - found.dead_zone_drive) /
            (axis.drive.max - found.dead_zone_drive);
   };
-  // So fast that the way that a stall asks for ends in the longest time that it may allow.
+  // So fast that the way that a stall asks for, and what the axis coasts after the faster approach, end in
+  // the longest time that a stall may allow.
+  const double coast = speed_at(homing.drive) * (found.lag_s + (ILK_LATENCY_TICKS + 1) * period_s);
   const double least =
-      std::ceil((axis.stall.min_counts + mechanics.backlash_counts + mechanics.noise_counts + 1.0) /
+      std::ceil((axis.stall.min_counts + mechanics.backlash_counts + mechanics.noise_counts + coast + 1.0) /
                 (longest_stall_s - (ILK_LATENCY_TICKS + 1) * period_s));
   if (slowest_share * speed_at(homing.slow_drive) < least) {
     const double share = least / slowest_share / found.full_speed_counts_per_s;
@@ -80,7 +66,9 @@ void take_homing(Axis& axis, const Robot& robot, const Identified& found, double
   }
   lower(homing.speed_counts_per_s, slowest_share * speed_at(homing.drive));
   lower(homing.slow_speed_counts_per_s, slowest_share * speed_at(homing.slow_drive));
-  raise(homing.slow_speed_counts_per_s, least);
+  raise(homing.slow_speed_counts_per_s,
+        (axis.stall.min_counts + mechanics.backlash_counts + mechanics.noise_counts + 1.0) /
+            (longest_stall_s - (ILK_LATENCY_TICKS + 1) * period_s));
   // A switch is read once a tick: what the axis goes meanwhile is no hysteresis.
   const double ways =
       (speed_at(homing.drive) + speed_at(homing.slow_drive)) * period_s + mechanics.noise_counts;
@@ -177,6 +165,25 @@ constexpr std::array homing_keys{
 };
 
 }  // namespace
+
+Axis with_dead_zone(Axis axis, double dead_zone_drive) {
+  DriveBounds& drive = axis.drive;
+  const DriveBounds old = drive;
+  drive.dead_zone = whole(dead_zone_drive);
+  const auto move = [&](std::uint32_t& number) {
+    const double share = (static_cast<double>(number) - old.dead_zone) / (old.max - old.dead_zone);
+    number = static_cast<std::uint32_t>(drive.dead_zone + share * (drive.max - drive.dead_zone));
+  };
+  move(drive.unhomed_max);
+  if (old.min > old.dead_zone) {
+    move(drive.min);
+  }
+  if (axis.homing) {
+    move(axis.homing->drive);
+    move(axis.homing->slow_drive);
+  }
+  return axis;
+}
 
 std::vector<NumberChange> changes_of(const Robot& robot, const Axis& axis, const Identified& found) {
   const double period_s = robot.period_us * 1e-6;

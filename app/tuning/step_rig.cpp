@@ -1,7 +1,6 @@
 #include "tuning/step_rig.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "plant/exchange.hpp"
 #include "robot/catalog.hpp"
@@ -43,8 +42,11 @@ RigResult<void> StepRig::begin_motion(bool sets_home) {
 }
 
 RigResult<void> StepRig::make_ready(const std::function<void(const ilk_axis_t&)>& watch) {
+  if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
+    return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
+  }
   const bool has_switch = config_.axis[slot_].limit_side != ILK_LIMIT_NONE;
-  const RigResult<void> moving = start().and_then([&] { return begin_motion(!has_switch); });
+  const RigResult<void> moving = run(settle_ticks_).and_then([&] { return begin_motion(!has_switch); });
   if (!moving || !has_switch) {
     return moving;
   }
@@ -55,24 +57,8 @@ RigResult<void> StepRig::make_ready(const std::function<void(const ilk_axis_t&)>
     }
     watch(axis());
   }
-  return run(settle_ticks_);
-}
-
-RigResult<void> StepRig::make_ready_by_hand() {
-  const ilk_axis_config_t& axis = config_.axis[slot_];
-  const double open = plant::position_from_switch(axis, axis.home_clear_counts);
-  const double home = axis.limit_side == ILK_LIMIT_UPPER ? std::min(0.0, open) : std::max(0.0, open);
-  const auto way = static_cast<std::int32_t>(std::lround(home - true_position_counts()));
-  return start()
-      .and_then(
-          [&] { return plant_.schedule(plant::command::PushAxis{slot_, way}).map([](std::uint64_t) {}); })
-      .and_then([&] { return run(2 * settle_ticks_); })
-      .and_then([&] { return begin_motion(true); });
-}
-
-RigResult<void> StepRig::start() {
-  if (const std::uint32_t error = ilk_init(&config_, &state_).error; error != ILK_CONFIG_ERROR_NONE) {
-    return tl::unexpected(at("the kernel refuses the robot: ", catalog::Family::config_error, error));
+  if (axis().homed == 0) {
+    return tl::unexpected(std::string("homing did not end"));
   }
   return run(settle_ticks_);
 }

@@ -35,10 +35,6 @@ class StepRig {
    * each tick of homing at the switch. */
   RigResult<void> make_ready(const std::function<void(const ilk_axis_t&)>& watch = [](const ilk_axis_t&) {});
 
-  /** The same for an axis that does not find its switch: somebody moves it by hand to its position 0, or to
-   * where the switch is open next to it, and says that its home is there. */
-  RigResult<void> make_ready_by_hand();
-
   /** Asks for a move in the next tick. */
   void move(std::int32_t target_counts, std::uint32_t drive);
 
@@ -60,7 +56,6 @@ class StepRig {
  private:
   void put(ilk_request_t request);
   void ask(ilk_request_kind_t kind);
-  RigResult<void> start();
   RigResult<void> begin_motion(bool sets_home);
   RigResult<void> run(std::uint32_t ticks);
   [[nodiscard]] RigResult<void> judge() const;

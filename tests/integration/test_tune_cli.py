@@ -143,3 +143,18 @@ def test_a_file_that_the_kernel_would_refuse_is_not_written(tmp_path: Path) -> N
     assert "drive.dead_zone" in message
     assert "at most a fifth of drive.max" in message
     assert not measured.exists()
+
+
+@pytest.mark.parametrize("options", [("--svg", "R"), ("--write", "P"), ("--svg", "W", "--write", "W")])
+def test_no_file_that_is_read_is_overwritten_by_another(tmp_path: Path, options: tuple[str, ...]) -> None:
+    files = {"R": tmp_path / "robot.toml", "P": hidden_motors(tmp_path), "W": tmp_path / "out"}
+    files["R"].write_text((ROOT / "models/robots/neuro.toml").read_text())
+    was = files["R"].read_bytes(), files["P"].read_bytes()
+    arguments = [files.get(option, option) for option in options]
+    code, _, message = tune(
+        "--axis", "feet", "--plant", files["P"], *arguments, robot=files["R"], word="identify"
+    )
+    assert code == USAGE
+    assert "would be overwritten" in message
+    assert (files["R"].read_bytes(), files["P"].read_bytes()) == was
+    assert not files["W"].exists()

@@ -14,6 +14,8 @@ constexpr double force_timeout_s = 0.008;
 constexpr double longest_lease_s = 0.010;
 /** How often the turning is planned anew (docs/steering.md). */
 constexpr double steering_period_s = 0.005;
+/** Of a sway of 0.2 mm at 10 Hz, and a little more. */
+constexpr double fastest_sway_mm_s = 15.0;
 /** A snapshot that comes later than this is heard as one that came so late. */
 constexpr std::uint32_t most_missed_ticks = 20;
 
@@ -227,9 +229,12 @@ bool BiopsyMode::listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noe
     findings_.found_mm[membrane] = records[membrane].value_or(-1.0);
   }
   const double before_mm = cue_mm_;
-  cue_mm_ = heard.cue_offset_mm;
+  // A needle that has to stand does not sway either; it joins the sway again without a leap.
+  const double wanted_mm = insertion_held_ || now_.images_disagree ? cue_mm_ : heard.cue_offset_mm;
+  const double most_mm = fastest_sway_mm_s * ticks * period_s_;
+  cue_mm_ += std::clamp(wanted_mm - cue_mm_, -most_mm, most_mm);
   now_.armed = heard.armed;
-  now_.cue = cue_mm_ != 0.0;
+  now_.cue = heard.cue_offset_mm != 0.0;
   insertion_.aim(cue_mm_, ticks == 0 ? 0.0 : (cue_mm_ - before_mm) / (ticks * period_s_), lease_s_);
   return true;
 }

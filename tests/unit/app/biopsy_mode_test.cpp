@@ -333,6 +333,27 @@ TEST_F(BiopsyModeTest, APunctureIsCuedByATremblingNeedle) {
   EXPECT_LT(backward_mm, 0.5);
 }
 
+/** Found from outside: the sways of a cue went on and led deeper. */
+TEST_F(BiopsyModeTest, ANeedleThatHasToStandDoesNotSway) {
+  begin();
+  press_hand(5.0);
+  for (std::uint32_t i = 0; i < minute_ticks && !loop_.biopsy().now().cue; ++i) {
+    loop_.tick();
+  }
+  ASSERT_TRUE(loop_.biopsy().now().cue);
+  loop_.hold({.insertion = true});
+  loop_.run(60);  // in which it comes to a stand from its speed
+  const std::int32_t held = loop_.state().axis[needle_push].position_counts;
+  for (std::uint32_t i = 0; i < 600; ++i) {
+    loop_.tick();
+    ASSERT_NEAR(loop_.state().axis[needle_push].position_counts, held, 60) << i;
+  }
+  loop_.hold({});
+  loop_.run(500);
+  EXPECT_GT(loop_.state().axis[needle_push].position_counts, held + 100);
+  EXPECT_TRUE(loop_.biopsy().is_open());
+}
+
 TEST_F(BiopsyModeTest, WhereImagesContradictWhatIsBelievedTheInsertionWaitsUntilTheyAgreeAndTheHandLetGo) {
   begin();
   loop_.run(50);

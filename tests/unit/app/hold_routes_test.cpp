@@ -56,8 +56,13 @@ TEST_F(HoldRoutesTest, TheGateHasOneSourceWhoseEndClosesIt) {
   ASSERT_EQ(as(iris, [&] { return signal("open"); }).status, 200u);
   EXPECT_EQ(signal("open").problem()["code"], "GATE_SOURCE");
   EXPECT_EQ(gate(), GateState::open);
-  ASSERT_EQ(as(iris, [&] { return post("/api/logout"); }).status, 200u);
+  EXPECT_EQ(signal("hold").status, 200u) << "whoever says so is believed";
+  EXPECT_EQ(gate(), GateState::hold);
+  EXPECT_EQ(as(iris, [&] { return signal("open"); }).problem()["code"], "GATE_SOURCE");
+  EXPECT_EQ(gate(), GateState::hold);
+  ASSERT_EQ(post("/api/logout").status, 200u);
   EXPECT_EQ(gate(), GateState::no_signal);
+  log_in("iris");
   EXPECT_EQ(signal("open").status, 200u) << "another source may take its place";
 }
 

@@ -147,13 +147,47 @@ TEST(Identification, TheFileThatComesOutOfItHomesAndFollowsAsOneWithTheTrueNumbe
   }
 }
 
+/** Found from outside: play that took longer than a move was given was taken for none. */
+TEST(Identification, MuchPlayOfASlowMotorIsMeasured) {
+  const Robot robot = neuro();
+  const Axis& feet = *robot.find("feet");
+  const auto found = identified(robot, feet, plant_with(robot, feet, {0.015, 300, 5000, 10}));
+  ASSERT_TRUE(found) << found.error();
+  EXPECT_NEAR(found->backlash_counts, 10.0, 0.75);
+}
+
+/** Found from outside: neither a slider, whose range does not hold 0, nor a slow motor that coasts for long
+ * came to a file that homes. */
+TEST(Identification, AnAxisThatDoesNotHomeWithItsFileHomesWithTheOneThatComesOut) {
+  const Robot robot = prostate();
+  for (const auto& [name, hidden] : {std::pair{"back_left", Hidden{0.15, 40'000, 5000, 10}},
+                                     {"insertion", Hidden{0.0945, 16'859, 16'500, 0}},
+                                     {"front_right", Hidden{0.08, 30'000, 8000, 10}}}) {
+    const Axis& axis = *robot.find(name);
+    plant::Parameters plant = plant_with(robot, axis, hidden);
+    const auto found = identified(robot, axis, plant);
+    ASSERT_TRUE(found) << name << ": " << found.error();
+    EXPECT_EQ(found->homing_error, "the axis faulted: STALL") << name;
+    const auto file = changed(robot, axis, changes_of(robot, axis, *found));
+    ASSERT_TRUE(file) << file.error().message();
+    const auto again = identified(*file, *file->find(name), plant, 2);
+    ASSERT_TRUE(again) << name << ": " << again.error();
+    EXPECT_FALSE(again->homing_error) << name << ": " << *again->homing_error;
+  }
+}
+
 TEST(Identification, WhatCannotBeMeasuredIsSaid) {
   const Robot robot = neuro();
   EXPECT_EQ(identify(robot, compile(robot).value(), shipped_plant(robot), "elbow", 1).error(),
             "neuro has no axis \"elbow\"");
   const Axis& yaw = *robot.find("yaw");
   EXPECT_EQ(identified(robot, yaw, plant_with(robot, yaw, {0.6, 1000, 5000, 1})).error(),
-            "yaw does not move at half of its largest drive");
+            "the axis faulted: STALL, before the first move");
+  const Axis& feet = *robot.find("feet");
+  EXPECT_EQ(
+      identified(robot, feet, plant_with(robot, feet, {0.015, 200, 5000, 20})).error(),
+      "feet stands at half of its largest drive for as long as its stall rule lets it: it moves nothing "
+      "there, or has more play than its file says");
 }
 
 TEST(GainSearch, FindsGainsThatAreNoWorseThanThoseItBeganWith) {

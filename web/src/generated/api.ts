@@ -1212,7 +1212,7 @@ export interface paths {
         /**
          * A signal of the breathing gate, valid for `valid_ms` from when it came: by the kernel's time in the simulated clock, by the
          *     wall's else. Send the next one well before. It needs no control, and is kept whether or not the gate is in use. One source
-         *     at a time: 409 GATE_SOURCE while the newest signal of another one is valid. When the session ends, the gate is closed.
+         *     at a time: 409 GATE_SOURCE for `open` while the newest signal of another one is valid; `hold` is taken from any. When the session ends, the gate is closed.
          */
         post: operations["signalBreathingGate"];
         delete?: never;
