@@ -64,8 +64,9 @@ class Output:
 
 def start_interlock(runtime: Path, *arguments: str | Path) -> subprocess.Popen:
     """`interlock` with its runtime directory; errors come with its output."""
+    command = [str(part) for part in (BIN / "interlock", *arguments)]
     return subprocess.Popen(
-        without_priority([BIN / "interlock", *arguments]),
+        without_priority(command) if "--realtime" in command else command,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
