@@ -42,6 +42,7 @@ struct BreathingGate {
   bool open = false;                      /**< what the newest signal says */
   DeadmanTimer signal{usual_gate_signal}; /**< held since that came, for its validity */
 
+  /** What it says at that moment. */
   [[nodiscard]] GateState at(const Moment& now) const noexcept {
     if (!in_use) {
       return GateState::off;

@@ -278,7 +278,9 @@ class TaskTable {
     return TaskTable(*this).of(typeid(Kind));
   }
 
+  /** The statuses of all places, each once. */
   [[nodiscard]] auto begin() noexcept { return all_.begin(); }
+  /** Behind the last one. */
   [[nodiscard]] auto end() noexcept { return all_.end(); }
   [[nodiscard]] auto begin() const noexcept { return all_.begin(); }
   [[nodiscard]] auto end() const noexcept { return all_.end(); }

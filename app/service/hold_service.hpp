@@ -33,6 +33,7 @@ struct HoldSource {
   }
 };
 
+/** Breathing gate and scan, as people and programs set them. */
 class HoldService {
  public:
   /** Of the setting in which the store has what is `kept`. */
