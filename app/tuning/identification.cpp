@@ -26,8 +26,8 @@ constexpr double noise_s = 5.0;
 constexpr std::int32_t shortest_way_counts = 60;
 constexpr double loop_ticks = 2.0;
 /** Of a stall: what a move that may stand uses up of it, and most, for one that has play to take up. */
-constexpr double half_patience = 0.5;
-constexpr double strong_patience = 0.8;
+constexpr double tried_stall_share = 0.5;
+constexpr double strong_stall_share = 0.8;
 /** Of the largest drive; the kernel accepts no wider one. */
 constexpr double widest_dead_zone = 0.2;
 constexpr double dead_zone_step = 0.02;
@@ -81,7 +81,7 @@ class Identification {
   RigResult<void> go_to_the_start();
   RigResult<void> try_drives();
   RigResult<Line> move_strongly(int direction, std::int32_t way);
-  RigResult<Line> move(int direction, std::uint32_t drive, std::int32_t way, double patience);
+  RigResult<Line> move(int direction, std::uint32_t drive, std::int32_t way, double stall_share);
   RigResult<void> come_to_rest();
   void fit();
   [[nodiscard]] Line line_of(const std::vector<double>& ways) const;
@@ -89,9 +89,9 @@ class Identification {
     return std::max(1U, static_cast<std::uint32_t>(std::lround(share * rules_.max_drive)));
   }
   /** Ticks without progress after which an axis stands: that share of what the kernel calls a stall. */
-  [[nodiscard]] std::uint32_t ticks_until_it_stands(std::uint32_t drive, double patience) const {
+  [[nodiscard]] std::uint32_t ticks_until_it_stands(std::uint32_t drive, double stall_share) const {
     const std::uint64_t effort = std::uint64_t{rules_.stall_effort_ticks} * rules_.max_drive / drive;
-    return static_cast<std::uint32_t>(patience *
+    return static_cast<std::uint32_t>(stall_share *
                                       static_cast<double>(std::min<std::uint64_t>(
                                           rules_.stall_ticks, effort == 0 ? rules_.stall_ticks : effort)));
   }
@@ -193,7 +193,7 @@ RigResult<void> Identification::try_drives() {
     for (const int direction : {1, -1}) {
       const auto strong = move_strongly(direction, way_counts_);
       const auto tried = strong.and_then(
-          [&](const Line&) { return move(direction, speed.drive, way_counts_, half_patience); });
+          [&](const Line&) { return move(direction, speed.drive, way_counts_, tried_stall_share); });
       if (!tried) {
         return tl::unexpected(tried.error() + ", at drive " + std::to_string(speed.drive));
       }
@@ -213,7 +213,7 @@ RigResult<void> Identification::try_drives() {
 
 /** At half of the largest drive, at which it has to move, and has to take up its play before it stalls. */
 RigResult<Line> Identification::move_strongly(int direction, std::int32_t way) {
-  return move(direction, drive_of(strong_share), way, strong_patience)
+  return move(direction, drive_of(strong_share), way, strong_stall_share)
       .and_then([&](const Line& line) -> RigResult<Line> {
         if (line.speed_counts_per_s == 0.0) {
           return tl::unexpected(axis_.name +
@@ -226,12 +226,13 @@ RigResult<Line> Identification::move_strongly(int direction, std::int32_t way) {
 
 /** From rest to rest. It ends when it has gone its way, when it has lasted, or where the axis stands: well
  * before the kernel would call it a stall. */
-RigResult<Line> Identification::move(int direction, std::uint32_t drive, std::int32_t way, double patience) {
+RigResult<Line> Identification::move(int direction, std::uint32_t drive, std::int32_t way,
+                                     double stall_share) {
   const std::int32_t from = position();
   const std::int32_t target =
       std::clamp(from + direction * (way + static_cast<std::int32_t>(rules_.coast_counts)),
                  axis_.lowest_setpoint_counts(), axis_.highest_setpoint_counts());
-  const std::uint32_t longest = ticks_until_it_stands(drive, patience);
+  const std::uint32_t longest = ticks_until_it_stands(drive, stall_share);
   const auto progress = static_cast<std::int32_t>(rules_.stall_min_counts + rules_.noise_counts);
   std::vector<double> ways{0.0};
   std::int32_t mark = 0;
