@@ -51,9 +51,9 @@ def without_priority(command: Sequence[str | Path]) -> list[str]:
     return setpriv + [str(part) for part in command]
 
 
-def start(command: list[str | Path]) -> subprocess.Popen:
+def start(command: Sequence[str | Path]) -> subprocess.Popen:
     """Starts a process and waits for its `ready` line."""
-    process = subprocess.Popen(without_priority(command), stdout=subprocess.PIPE, text=True)
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
     assert process.stdout is not None
     for line in process.stdout:
         if line.startswith("ready"):
@@ -72,7 +72,7 @@ def stop(process: subprocess.Popen) -> int:
 
 
 class BareKernel:
-    def __init__(self, directory: Path, clock: str, *more: str) -> None:
+    def __init__(self, directory: Path, clock: str, *more: str, priority: bool = False) -> None:
         self.directory = directory
         self.link_path = directory / "link.sock"
         config = directory / "neuro.ilkc"
@@ -83,7 +83,8 @@ class BareKernel:
         sim_options = options(plant=plant, robot=config, bus=bus, control=control, seed=1)
         self.sim = start([BIN / "interlock-sim", *sim_options])
         kernel_options = options(config=config, bus=f"sim:{bus}", link=self.link_path, clock=clock)
-        self.kernel = start([BIN / "interlock-kernel", *kernel_options, *more])
+        command = [BIN / "interlock-kernel", *kernel_options, *more]
+        self.kernel = start(command if priority else without_priority(command))
         self.plant = PlantControl(directory / "control.sock")
 
     def attach(self) -> LinkClient:
@@ -96,9 +97,9 @@ class BareKernel:
 
 
 @contextlib.contextmanager
-def bare_kernel(clock: str = "sim") -> Iterator[BareKernel]:
+def bare_kernel(clock: str = "sim", *, priority: bool = False) -> Iterator[BareKernel]:
     with tempfile.TemporaryDirectory(prefix="interlock-test-") as directory:
-        kernel = BareKernel(Path(directory), clock)
+        kernel = BareKernel(Path(directory), clock, priority=priority)
         try:
             yield kernel
         finally:

@@ -115,7 +115,7 @@ def page_faults(pid: int) -> int:
 def test_nothing_that_the_app_does_costs_a_real_time_loop_a_page_fault() -> None:
     """From the kernel's `ready` to the end of the run. Needs CAP_SYS_NICE and CAP_IPC_LOCK."""
     dice = random.Random(20_181)
-    with bare_kernel("real") as kernel:
+    with bare_kernel("real", priority=True) as kernel:
         before = page_faults(kernel.kernel.pid)
         for _ in range(5):
             client = attach_after_worst(kernel.link_path)
