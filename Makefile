@@ -181,8 +181,8 @@ thesis: build-tests ## Run the targeting experiments of the thesis on the simula
 	@$(release)/bin/thesis_study $(ROBOT)
 
 .PHONY: study
-study: build-tests ## Measure steering and membrane detection on simulated insertions against their limits
-	@$(measure) steering python verification/steering/run.py
+study: build-tests ## Measure homing, tracking, targeting, steering and membrane detection under errors, against their limits: [KEEP=--keep]
+	@$(measure) steering python verification/study/run.py $(KEEP)
 
 .PHONY: install
 install: build ## Install programs, robot files and console: [PREFIX=/usr/local] [DESTDIR=]

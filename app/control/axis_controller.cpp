@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numbers>
+#include <utility>
 
 namespace interlock {
 namespace {
@@ -74,6 +75,8 @@ AxisOutput AxisController::update(const ilk_axis_t& axis, std::uint32_t tick, co
   estimator_.add(axis.position_counts, axis.card_time_us);
   AxisOutput output;
   output.velocity = estimator_.estimate();
+  map_.follow(std::exchange(last_drive_, 0),
+              output.velocity ? std::optional(output.velocity->counts_per_s) : std::nullopt, elapsed);
   const std::int64_t way = std::int64_t{target_counts} - axis.position_counts;
   const int direction = way < 0 ? -1 : 1;
   const ControlResult<PivOutput> piv =
@@ -93,12 +96,15 @@ AxisOutput AxisController::update(const ilk_axis_t& axis, std::uint32_t tick, co
     return output;
   }
   output.drive = std::min(map_.drive(piv->counts_per_s), ceiling_drive);
+  last_drive_ = output.drive;
   return output;
 }
 
 void AxisController::observe(const ilk_axis_t& axis, std::uint32_t tick) noexcept {
   last_tick_ = tick;
   estimator_.add(axis.position_counts, axis.card_time_us);
+  map_.follow(0, std::nullopt, 0.0);
+  last_drive_ = 0;
   piv_.reset();
 }
 

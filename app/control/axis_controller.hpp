@@ -87,6 +87,7 @@ class AxisController {
   PivController piv_;
   DriveMap map_;
   std::optional<std::uint32_t> last_tick_;
+  std::uint32_t last_drive_ = 0;
 };
 
 }  // namespace interlock

@@ -14,6 +14,21 @@ constexpr double seconds_per_minute = 60.0;
 constexpr double fastest = 1e9;
 constexpr double slowest = 1e-3;
 
+/** A speed is measured as the mean of 20 ms, of an axis that follows its drive after two ticks and its lag.
+ */
+constexpr double measured_late_s = 0.015;
+constexpr double settled_s = 0.1;
+constexpr double follow_s = 0.3;
+constexpr double slowest_rpm = 10.0;
+constexpr double least_share = 0.3;
+constexpr double most_shift_words = 600.0 * frequency_map::words_per_hz;
+
+/** A frequency word moved by so much, within the map. */
+std::uint32_t shifted(double word, double by) noexcept {
+  return static_cast<std::uint32_t>(
+      std::clamp<double>(word + by, frequency_map::fastest_word, frequency_map::slowest_word));
+}
+
 /** The direction bit of spec/frames.md chooses the column. */
 Wave wave_of(bool motor_direction, bool decreasing) noexcept {
   return motor_direction == decreasing ? Wave::negative : Wave::positive;
@@ -65,6 +80,34 @@ double DriveMap::speed(std::uint32_t drive, int direction) const noexcept {
   return decreasing ? -magnitude : magnitude;
 }
 
+void DriveMap::follow(std::uint32_t drive, std::optional<double> counts_per_s, double elapsed_s) noexcept {
+  if (rules_.card != ILK_CARD_HIGH_FREQUENCY || drive == 0) {
+    driven_words_.reset();
+    return;
+  }
+  const double word = frequency_map::word_of(drive);
+  if (!driven_words_) {
+    driven_words_ = word;
+    driven_s_ = 0.0;
+  }
+  *driven_words_ += elapsed_s / (measured_late_s + elapsed_s) * (word - *driven_words_);
+  driven_s_ += elapsed_s;
+  if (!counts_per_s || driven_s_ < settled_s) {
+    return;
+  }
+  const double rpm = std::abs(*counts_per_s) / rules_.counts_per_revolution * seconds_per_minute;
+  const Wave wave = wave_of(rules_.motor_direction, *counts_per_s < 0);
+  const double expected_rpm = frequency_map::rpm_at(shifted(*driven_words_, -shift_words_), wave);
+  // Slower, the map is so flat that noise of the speed would move it far; much slower, something holds the
+  // axis.
+  if (expected_rpm < slowest_rpm || rpm < expected_rpm * least_share) {
+    return;
+  }
+  const double wanted =
+      std::clamp(*driven_words_ - frequency_map::word_for(rpm, wave), -most_shift_words, most_shift_words);
+  shift_words_ += elapsed_s / (follow_s + elapsed_s) * (wanted - shift_words_);
+}
+
 double DriveMap::full_speed() const noexcept {
   return std::min(speed(rules_.max_drive, 1), -speed(rules_.max_drive, -1));
 }
@@ -72,12 +115,12 @@ double DriveMap::full_speed() const noexcept {
 double DriveMap::frequency_drive(double counts_per_s) const noexcept {
   const double rpm = std::abs(counts_per_s) / rules_.counts_per_revolution * seconds_per_minute;
   const Wave wave = wave_of(rules_.motor_direction, counts_per_s < 0);
-  return frequency_map::drive_at(frequency_map::word_for(rpm, wave));
+  return frequency_map::drive_at(shifted(frequency_map::word_for(rpm, wave), shift_words_));
 }
 
 double DriveMap::frequency_speed(std::uint32_t drive, bool decreasing) const noexcept {
-  const double rpm =
-      frequency_map::rpm_at(frequency_map::word_of(drive), wave_of(rules_.motor_direction, decreasing));
+  const double rpm = frequency_map::rpm_at(shifted(frequency_map::word_of(drive), -shift_words_),
+                                           wave_of(rules_.motor_direction, decreasing));
   return rpm / seconds_per_minute * rules_.counts_per_revolution;
 }
 

@@ -8,6 +8,10 @@
  *     PWM, NON_PWM, ANALOG   drive = dead_zone + |v| / full_speed (max_drive - dead_zone)
  *     HIGH_FREQUENCY         |v| in revolutions per minute -> frequency word of that direction -> drive
  *
+ * The resonance of a motor that is driven by frequency moves with its warmth, its load and from one motor to
+ * the next, and its whole speed map with it. A motor that is as fast at one frequency as the published map
+ * says of another shows by how much: the map follows it (`follow`).
+ *
  * The three linear cards differ in the word that the kernel builds, not in the drive. A speed other than zero
  * gives at least `min_drive`, so that the axis moves; what is too fast gives `max_drive`: clamped, not masked
  * as in the published listing, where 0xEFFF loses a bit.
@@ -15,6 +19,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "control/control_error.hpp"
 #include "interlock/types.h"
@@ -45,6 +50,12 @@ class DriveMap {
   /** Speed of the axis at a drive, with the sign of `direction`; a drive above `max_drive` counts as that. */
   [[nodiscard]] double speed(std::uint32_t drive, int direction) const noexcept;
 
+  /**
+   * Follows the resonance of a HIGH_FREQUENCY motor; nothing happens with other cards. Once every period:
+   * `drive` as it was given for this one, zero drive included, and the speed as measured, if it is known.
+   */
+  void follow(std::uint32_t drive, std::optional<double> counts_per_s, double elapsed_s) noexcept;
+
   /** What the axis reaches in both directions. */
   [[nodiscard]] double full_speed() const noexcept;
 
@@ -55,6 +66,9 @@ class DriveMap {
   [[nodiscard]] double frequency_speed(std::uint32_t drive, bool decreasing) const noexcept;
 
   DriveMapRules rules_;
+  std::optional<double> driven_words_; /**< frequency word of the drive, as late as the speed is measured */
+  double driven_s_ = 0.0;              /**< for so long */
+  double shift_words_ = 0.0;           /**< of the map, from the published one */
 };
 
 }  // namespace interlock

@@ -70,7 +70,8 @@ struct BiopsyNow {
   double speed_mm_s = 0.0;
   double left_mm = 0.0;        /**< to the target's depth */
   bool waits_for_hand = false; /**< the hand pressed when the pedal was pressed, and has to let go first */
-  bool armed = false;          /**< listens for a membrane */
+  bool armed = false;          /**< looks for a membrane */
+  bool rough = false;          /**< the tissue is too rough for that: none is found */
   bool cue = false;
   double desired_rotation_rad = 0.0;
   double alpha = 0.0;

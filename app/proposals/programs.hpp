@@ -40,4 +40,11 @@ std::optional<MoveLeg> ablation_leg(const Robot& robot, const AblationStep& step
  */
 PathProgram pose_program(const Robot& robot, const Alignment& alignment, bool insert);
 
+/**
+ * The program with a leg before each to positions, in which its axes go to where their tools' play is taken
+ * up on the way (`Axis::take_up_counts`): then each arrives from below, where kinematics hold. An axis that
+ * the leg before leaves below that needs none.
+ */
+PathProgram arriving_from_below(const Robot& robot, PathProgram program);
+
 }  // namespace interlock

@@ -69,6 +69,11 @@ Mechanics read_mechanics(TableReader table, std::uint32_t period_us) {
   mechanics.max_delta_counts = table.integer<std::uint32_t>("max_delta_counts");
   mechanics.rest_ticks = table.ticks("rest_ms", period_us);
   mechanics.full_speed_counts_per_s = table.integer<std::uint32_t>("full_speed_counts_per_s");
+  if (table.has("tool_play_counts")) {
+    constexpr std::int64_t most = 10000;
+    mechanics.tool_play_counts =
+        static_cast<std::uint32_t>(table.integer_between("tool_play_counts", 0, most));
+  }
   table.refuse_unknown_keys();
   return mechanics;
 }

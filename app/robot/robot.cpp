@@ -76,6 +76,16 @@ std::int32_t Axis::lowest_setpoint_counts() const { return saturated(reach_of(*t
 
 std::int32_t Axis::highest_setpoint_counts() const { return saturated(reach_of(*this).high); }
 
+std::optional<std::int32_t> Axis::take_up_counts(std::int32_t counts) const {
+  const std::int64_t play = mechanics.tool_play_counts.value_or(0);
+  // It may rest anywhere within its deadband, at both places.
+  const std::int64_t below = counts - play - 2 * static_cast<std::int64_t>(deadband_counts) - 1;
+  if (play == 0 || below < lowest_setpoint_counts()) {
+    return std::nullopt;
+  }
+  return static_cast<std::int32_t>(below);
+}
+
 bool Axis::accepts_setpoint(std::int32_t counts) const {
   return lowest_setpoint_counts() <= counts && counts <= highest_setpoint_counts();
 }

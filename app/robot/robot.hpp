@@ -73,11 +73,14 @@ struct Gains {
 struct Mechanics {
   std::uint32_t coast_counts =
       0; /**< farthest travel from the reading on which drive was last allowed until rest */
-  std::uint32_t backlash_counts = 0;         /**< lost motion when the direction changes */
+  std::uint32_t backlash_counts = 0;         /**< of the encoder, when the direction changes */
   std::uint32_t noise_counts = 0;            /**< peak-to-peak noise of the counter at rest */
   std::uint32_t max_delta_counts = 0;        /**< largest possible motion in one tick */
   std::uint32_t rest_ticks = 0;              /**< ticks without motion that are rest */
   std::uint32_t full_speed_counts_per_s = 0; /**< highest speed, of the unloaded axis at `drive.max` */
+  /** Between encoder and tool, unknown to the kernel; nothing: nobody measured it. Kinematics hold for an
+   * axis that came from below; one that came from above has its tool up to so much beyond. */
+  std::optional<std::uint32_t> tool_play_counts = {};
 
   bool operator==(const Mechanics&) const = default;
 };
@@ -156,6 +159,10 @@ struct Axis {
 
   /** Highest setpoint that the kernel accepts from the axis, homed at its switch if it has one. */
   [[nodiscard]] std::int32_t highest_setpoint_counts() const;
+
+  /** Setpoint below `counts` from which an axis that goes there takes up its tool's play, wherever it came
+   * from. Nothing when it has none, or no room for it. */
+  [[nodiscard]] std::optional<std::int32_t> take_up_counts(std::int32_t counts) const;
 
   /** Whether the kernel accepts that setpoint from the homed axis. */
   [[nodiscard]] bool accepts_setpoint(std::int32_t counts) const;

@@ -38,6 +38,7 @@ json now_json(const ControlView& view) {
           {"left_mm", now.left_mm},
           {"waits_for_hand", now.waits_for_hand},
           {"armed", now.armed},
+          {"rough", now.rough},
           {"cue", now.cue},
           {"wanted_rotation_rad", now.desired_rotation_rad},
           {"alpha", now.alpha},

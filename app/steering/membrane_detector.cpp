@@ -9,6 +9,9 @@
 namespace interlock {
 namespace {
 
+/** Below it the needle is in no tissue. */
+constexpr double least_force_n = 0.1;
+
 std::size_t periods_of(double time_s, double period_s) noexcept {
   return static_cast<std::size_t>(std::llround(time_s / period_s));
 }
@@ -31,6 +34,8 @@ KinematicsResult<void> check_rule(const MembraneParameters& rule) noexcept {
       .and_then([&] { return check_range("slowest_mm_s", rule.slowest_mm_s, 0.0, 100.0); })
       .and_then([&] { return check_range("slowest_share", rule.slowest_share, 0.0, 1.0); })
       .and_then([&] { return check_range("refractory_s", rule.refractory_s, 0.0, 60.0); })
+      .and_then([&] { return check_range("roughest_n", rule.roughest_n, 1e-3, 1000.0); })
+      .and_then([&] { return check_range("rough_time_s", rule.rough_time_s, 3.0 * rule.period_s, 60.0); })
       .and_then([&] { return check_cue(rule.cue); });
 }
 
@@ -82,21 +87,27 @@ KinematicsResult<MembraneState> MembraneDetector::step(const MembraneSample& sam
   while (left() > 0 && sample.depth_mm > depths_mm_[next_] + parameters_.skip_mm) {
     close({});
   }
-  MembraneState state;
-  state.armed = left() > 0 && std::abs(sample.depth_mm - depths_mm_[next_]) <= parameters_.arm_mm &&
-                sample.speed_mm_s >= parameters_.slowest_mm_s && deaf_periods_ == 0;
+  const bool near_membrane =
+      left() > 0 && std::abs(sample.depth_mm - depths_mm_[next_]) <= parameters_.arm_mm;
+  const bool goes_in = sample.speed_mm_s >= parameters_.slowest_mm_s && deaf_periods_ == 0;
   deaf_periods_ -= deaf_periods_ > 0 ? 1 : 0;
+  if (!goes_in || near_membrane != near_membrane_) {
+    taken_ = 0;
+    near_membrane_ = near_membrane;
+  }
+  MembraneState state{.armed = goes_in && near_membrane, .rough = is_rough()};
   if (state.armed) {
-    hear(sample);
-    const Heard& highest = peak();
-    state.found = is_drop(highest, sample.speed_mm_s);
+    take(sample);
+    const Taken& highest = peak();
+    state.found = !state.rough && is_drop(highest, sample.speed_mm_s);
     if (state.found) {
       close(highest.sample.depth_mm);
       deaf_periods_ = periods_of(parameters_.refractory_s, parameters_.period_s);
       cue_periods_ = 0;
     }
-  } else {
-    heard_ = 0;
+  } else if (goes_in && is_clear(sample.depth_mm)) {
+    measure_roughness(sample);
+    take(sample);
   }
   if (cue_periods_) {
     const double since_s = static_cast<double>(*cue_periods_) * parameters_.period_s;
@@ -109,9 +120,11 @@ KinematicsResult<MembraneState> MembraneDetector::step(const MembraneSample& sam
 
 void MembraneDetector::reset() noexcept {
   next_ = 0;
-  heard_ = 0;
+  taken_ = 0;
   deaf_periods_ = 0;
   settled_ = false;
+  fall_n2_ = 0.0;
+  falls_ = 0;
   cue_periods_.reset();
 }
 
@@ -121,19 +134,43 @@ void MembraneDetector::low_pass(double force_n) noexcept {
   settled_ = true;
 }
 
-void MembraneDetector::hear(const MembraneSample& sample) noexcept {
-  window_[heard_ % window_.size()] = {force_n_, sample};
-  ++heard_;
+/** No membrane can be here, whether it is left or not. */
+bool MembraneDetector::is_clear(double depth_mm) const noexcept {
+  const bool before_next = left() == 0 || depth_mm < depths_mm_[next_] - parameters_.skip_mm;
+  return before_next && (next_ == 0 || depth_mm > depths_mm_[next_ - 1] + parameters_.skip_mm);
 }
 
-const MembraneDetector::Heard& MembraneDetector::peak() const noexcept {
-  const auto end = window_.begin() + static_cast<std::ptrdiff_t>(std::min(heard_, window_.size()));
-  return *std::max_element(window_.begin(), end, [](const Heard& left, const Heard& right) {
+void MembraneDetector::measure_roughness(const MembraneSample& sample) noexcept {
+  const Taken& oldest = window_[taken_ % window_.size()];
+  const bool even = sample.speed_mm_s >= parameters_.slowest_share * oldest.sample.speed_mm_s;
+  if (taken_ < window_.size() || oldest.force_n < least_force_n || !even) {
+    return;
+  }
+  const double fall_n = std::max(0.0, oldest.force_n - force_n_);
+  ++falls_;
+  const double share =
+      std::max(1.0 / static_cast<double>(falls_), parameters_.period_s / parameters_.rough_time_s);
+  fall_n2_ += share * (fall_n * fall_n - fall_n2_);
+}
+
+bool MembraneDetector::is_rough() const noexcept {
+  const bool known = static_cast<double>(falls_) * parameters_.period_s >= parameters_.rough_time_s / 3.0;
+  return known && fall_n2_ > parameters_.roughest_n * parameters_.roughest_n;
+}
+
+void MembraneDetector::take(const MembraneSample& sample) noexcept {
+  window_[taken_ % window_.size()] = {force_n_, sample};
+  ++taken_;
+}
+
+const MembraneDetector::Taken& MembraneDetector::peak() const noexcept {
+  const auto end = window_.begin() + static_cast<std::ptrdiff_t>(std::min(taken_, window_.size()));
+  return *std::max_element(window_.begin(), end, [](const Taken& left, const Taken& right) {
     return left.force_n < right.force_n;
   });
 }
 
-bool MembraneDetector::is_drop(const Heard& peak, double speed_mm_s) const noexcept {
+bool MembraneDetector::is_drop(const Taken& peak, double speed_mm_s) const noexcept {
   const double least_n = std::max(parameters_.least_drop_n, parameters_.least_drop_share * peak.force_n);
   return peak.force_n >= parameters_.least_peak_n && peak.force_n - force_n_ >= least_n &&
          speed_mm_s >= parameters_.slowest_share * peak.sample.speed_mm_s;
@@ -142,7 +179,7 @@ bool MembraneDetector::is_drop(const Heard& peak, double speed_mm_s) const noexc
 void MembraneDetector::close(MembraneRecord record) noexcept {
   records_[next_] = record;
   ++next_;
-  heard_ = 0;
+  taken_ = 0;
 }
 
 }  // namespace interlock

@@ -1,6 +1,7 @@
 #include "targeting/error_budget.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "kinematics/domain.hpp"
@@ -24,20 +25,30 @@ using Covariances = std::array<Matrix3d, std::tuple_size_v<decltype(ErrorBudget:
 
 double squared(double value) { return value * value; }
 
-double encoder_counts2(const Axis& axis) { return squared(axis.deadband_counts + 0.5) / 3.0; }
+double encoder_counts2(const Axis& axis, double /*position*/) {
+  return squared(axis.deadband_counts + 0.5) / 3.0;
+}
 
-double play_counts2(const Axis& axis) { return squared(axis.mechanics.backlash_counts) / 12.0; }
+double play_counts2(const Axis& axis, double position) {
+  const double play = axis.mechanics.tool_play_counts.value_or(0);
+  const auto counts = axis.to_counts(position);
+  const bool taken_up = counts && axis.take_up_counts(*counts);
+  return squared(taken_up ? std::min(play, axis.deadband_counts + 0.5) : play) / 3.0;
+}
 
-/** Of a point that moves with the axes by the columns of `motion`. */
-Matrix3d covariance_of(const Robot& robot, const Eigen::Matrix3Xd& motion, double (*counts2)(const Axis&)) {
+/** Of a point that moves with the axes at these positions by the columns of `motion`. */
+Matrix3d covariance_of(const Robot& robot, const AxisPositions& positions, const Eigen::Matrix3Xd& motion,
+                       double (*counts2)(const Axis&, double)) {
   Matrix3d sum = Matrix3d::Zero();
   for (std::size_t place = 0; place < robot.axes.size(); ++place) {
     const Axis& axis = robot.axes[place];
     const Vector3d by_count = motion.col(static_cast<Eigen::Index>(place)) / axis.counts_per_unit;
-    sum += counts2(axis) * by_count * by_count.transpose();
+    sum += counts2(axis, positions[place]) * by_count * by_count.transpose();
   }
   return sum;
 }
+
+bool has_measured_play(const Axis& axis) { return axis.mechanics.tool_play_counts.has_value(); }
 
 Matrix3d cross_with(const Vector3d& lever) {
   return (Matrix3d() << 0.0, -lever.z(), lever.y(), lever.z(), 0.0, -lever.x(), -lever.y(), lever.x(), 0.0)
@@ -118,8 +129,8 @@ KinematicsResult<ErrorBudget> error_budget_of(const Robot& robot, const RobotKin
           scanner_from_zframe.linear() *
           (jacobian->topRows<3>() - cross_with(lever) * jacobian->bottomRows<3>());
       const Vector3d point = scanner_from_zframe * (pose->translation() + lever);
-      covariances = {registered.at(point), covariance_of(robot, motion, encoder_counts2),
-                     covariance_of(robot, motion, play_counts2),
+      covariances = {registered.at(point), covariance_of(robot, positions, motion, encoder_counts2),
+                     covariance_of(robot, positions, motion, play_counts2),
                      squared(robot.calibration_mm.value_or(0.0)) * Matrix3d::Identity(),
                      accuracy.target_mm2.value_or(Matrix3d::Zero())};
       return ellipsoid_of(point, covariances);
@@ -137,7 +148,10 @@ KinematicsResult<ErrorBudget> error_budget_of(const Robot& robot, const RobotKin
              : "The registration came without its residual and the points of its fiducials, "
                "or its rotation is ignored."},
         {"encoder", 0.0, 0.0, stated},
-        {"play", 0.0, 0.0, stated},
+        {"play", 0.0, 0.0,
+         std::ranges::all_of(robot.axes, has_measured_play)
+             ? stated
+             : "The robot's file does not have mechanics.tool_play_counts for every axis."},
         {"calibration", 0.0, 0.0, robot.calibration_mm ? stated : "The robot's file has no calibration_mm."},
         {"image", 0.0, 0.0, accuracy.target_mm2 ? stated : "The target came without a covariance."},
     }};

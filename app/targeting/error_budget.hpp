@@ -8,11 +8,12 @@
  *
  *     encoder       J D Jᵀ; an axis rests anywhere within deadband + 1/2 count of its setpoint: variance
  *                   (deadband + 1/2)²/3 counts²
- *     play          J D Jᵀ; the load is anywhere within the lost motion of b counts: variance b²/12 counts²
- *     registration  σ²/N I + [r]ₓ W [r]ₓᵀ; r from the centroid of the N fiducials to the point, W along their
- *                   principal axes σ²/(N fₖ²), fₖ their root mean square distance from the axis k
- *     calibration   s² I, s as the robot's file states it
- *     image         as whoever sets the target states it
+ *     play          J D Jᵀ; the tool is anywhere from where the encoder is to q counts beyond it: second
+ * moment q²/3 counts². An axis with room to come from below (`Axis::take_up_counts`) loses its play p but for
+ * what it may settle back: q = min(p, deadband + 1/2). Otherwise q = p registration  σ²/N I + [r]ₓ W [r]ₓᵀ; r
+ * from the centroid of the N fiducials to the point, W along their principal axes σ²/(N fₖ²), fₖ their root
+ * mean square distance from the axis k calibration   s² I, s as the robot's file states it image         as
+ * whoever sets the target states it
  *
  * The trace of the registration's part is the TRE² of J. M. Fitzpatrick, J. B. West, C. R. Maurer: Predicting
  * error in rigid-body point-based registration, IEEE Trans. Med. Imaging 17(5), 1998. The error of a fiducial

@@ -33,10 +33,14 @@ void Needle::advance(double wanted_insertion_mm_s, double wanted_rotation_rad_s,
 }
 
 void Needle::move(double way_mm, double turned_rad) {
-  turn(turned_rad / 2.0);
+  const double most_rad = parameters_.torsion_play_rad + parameters_.windup_rad_per_mm * insertion_mm_;
+  const double wound_rad = std::clamp(wound_rad_ + turned_rad, -most_rad, most_rad);
+  const double tip_rad = wound_rad_ + turned_rad - wound_rad;
+  wound_rad_ = wound_rad;
+  turn(tip_rad / 2.0);
   go(way_mm);
   wander(way_mm);
-  turn(turned_rad / 2.0);
+  turn(tip_rad / 2.0);
   rotation_rad_ += turned_rad;
   insertion_mm_ += way_mm;
 }

@@ -18,8 +18,11 @@
 namespace interlock::needle {
 
 struct NeedleParameters {
-  double curvature_per_mm = 0.0041;   /**< of the circle without rotation */
-  double bevel_rad = 0.0;             /**< angle of the bevel when the encoder says 0 */
+  double curvature_per_mm = 0.0041; /**< of the circle without rotation */
+  double bevel_rad = 0.0;           /**< angle of the bevel when the encoder says 0 */
+  double torsion_play_rad = 0.0;    /**< by which hub and tip may differ before the tip turns, either way */
+  double windup_rad_per_mm =
+      0.0; /**< and as much more for each mm in tissue, whose friction winds the shaft */
   Eigen::Vector2d entry_mm{0.0, 0.0}; /**< where it really enters, x and y */
   Eigen::Vector2d tilt_rad{0.0, 0.0}; /**< slope of its way ahead there, towards x and y */
   double wander_rad = 0.0; /**< by which tissue turns the way ahead, normal, about x and y alike: after a
@@ -56,6 +59,7 @@ class Needle {
 
   NeedleParameters parameters_;
   Noise noise_;
+  double wound_rad_ = 0.0; /**< hub ahead of the tip */
   Eigen::Vector3d tip_mm_;
   Eigen::Vector3d ahead_;
   Eigen::Vector3d bend_;

@@ -14,6 +14,9 @@ NeedleParameters needle_of(const plant::SceneParameters& scene) {
   NeedleParameters needle;
   needle.curvature_per_mm = scene.curvature_per_mm;
   needle.wander_rad = scene.wander_rad;
+  needle.bevel_rad = scene.bevel_rad;
+  needle.torsion_play_rad = scene.torsion_play_rad;
+  needle.windup_rad_per_mm = scene.windup_rad_per_mm;
   return needle;
 }
 
@@ -42,7 +45,8 @@ Scene::Scene(const plant::SceneParameters& parameters, std::uint64_t seed)
     : parameters_(parameters),
       needle_(needle_of(parameters), Noise(seed, needle_stream)),
       tissue_(tissue_of(parameters), Noise(seed, tissue_stream)),
-      imager_({parameters.image_period_s, parameters.image_age_s, parameters.image_deviation_mm},
+      imager_({parameters.image_period_s, parameters.image_age_s, parameters.image_deviation_mm,
+               parameters.image_tip_bias_mm, parameters.image_breathing_mm, parameters.image_breath_s},
               Noise(seed, image_stream)),
       target_mm_(vector_of(parameters.target_mm)) {
   punctures_mm_.reserve(parameters.membranes.size());
@@ -60,6 +64,7 @@ void Scene::advance(const plant::AxisPositions& counts, plant::Microseconds elap
   needle_.move(way_mm, rotation_rad - rotation_rad_.value_or(0.0));
   rotation_rad_ = rotation_rad;
   deepest_mm_ += way_mm;
+  target_mm_.z() += parameters_.dragged_share * way_mm;
   needle_n_ = deepest_mm_ > 0.0 ? tissue_.press(std::max(0.0, depth_mm_), period_s) : 0.0;
   if (depth_mm_ <= 0.0) {
     needle_n_ = 0.0;

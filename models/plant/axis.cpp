@@ -51,7 +51,8 @@ Axis::Axis(const ilk_axis_config_t& axis, const AxisParameters& parameters)
       lowest_(end_stop(axis, parameters, false)),
       highest_(end_stop(axis, parameters, true)),
       motor_position_(parameters.start_counts),
-      load_(parameters.start_counts) {}
+      load_(parameters.start_counts),
+      tool_(parameters.start_counts) {}
 
 void Axis::push(double counts, Microseconds duration) {
   push_left_ += counts;
@@ -68,6 +69,8 @@ double Axis::push_step(double elapsed_s) {
 void Axis::advance(Microseconds elapsed) {
   const double elapsed_s = seconds(elapsed);
   const double pushed = push_step(elapsed_s);
+  const double effort = supplied_ ? effort_ : 0.0;
+  warmth_ += (effort - warmth_) * elapsed_s / (parameters_.heat_time_s + elapsed_s);
   switch_.advance(elapsed);
   if (jammed_) {
     speed_ = 0;
@@ -88,6 +91,7 @@ void Axis::advance(Microseconds elapsed) {
     speed_ = 0;
   }
   load_ = std::clamp(load_ + pushed, motor_position_ - play_, motor_position_ + play_);
+  tool_ = std::clamp(tool_, load_, load_ + parameters_.tool_play_counts);
   switch_.follow(load_);
 }
 

@@ -1,6 +1,7 @@
 /**
  * @file
- * Mechanics of one axis: motor with lag, play, end stops and limit switch.
+ * Mechanics of one axis: motor with lag and warmth, play before and behind the encoder, end stops and limit
+ * switch.
  *
  * Positions are true positions in counts, in the frame in which the switch edge is at the home offset.
  */
@@ -49,7 +50,10 @@ class Axis {
   Axis(const ilk_axis_config_t& axis, const AxisParameters& parameters);
 
   /** What the card's amplifier does from now on. */
-  void drive(const wire::MotorCommand& command) { target_speed_ = motor_.speed(command); }
+  void drive(const wire::MotorCommand& command) {
+    target_speed_ = motor_.speed(command, warmth_);
+    effort_ = motor_.effort(command);
+  }
 
   /** Gives the amplifier power, or takes it: without it no drive and no runaway moves the axis. */
   void supply(bool on) { supplied_ = on; }
@@ -81,7 +85,11 @@ class Axis {
   void clear_faults();
 
   const std::string& name() const { return parameters_.name; }
+  /** Of what the encoder sees. */
   double position_counts() const { return load_; }
+  /** Of the tool: where the encoder is after motion to larger positions, up to the play beyond it otherwise.
+   */
+  double tool_counts() const { return tool_; }
   double speed_counts_per_s() const { return speed_; }
   bool is_jammed() const { return jammed_; }
   /** Nothing when it does not run away. */
@@ -104,8 +112,11 @@ class Axis {
   double highest_;
   double motor_position_;
   double load_;
+  double tool_;
   double speed_ = 0;
   double target_speed_ = 0;
+  double effort_ = 0;
+  double warmth_ = 0; /**< 0 cold, 1 warm */
   bool supplied_ = false;
   double push_left_ = 0;
   double push_speed_ = 0;

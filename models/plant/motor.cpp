@@ -6,8 +6,9 @@
 namespace interlock::plant {
 namespace {
 
-constexpr std::uint32_t kSlowestWord = 1196612456u;
-constexpr std::uint32_t kWordStep = 4063228u;
+constexpr double kSlowestWord = 1196612456;
+constexpr double kWordStep = 4063228;
+constexpr double kWordsPerHz = 22009;  // the published relation of word and frequency
 constexpr std::size_t kMapPoints = 24;
 
 /** Speeds in revolutions per minute, from the slowest word on; a lower word is faster. */
@@ -22,18 +23,17 @@ constexpr SpeedMap kNegativeRpm{0,      0.054,  0.189,   0.331,   0.614,   1.095
 
 }  // namespace
 
-double published_speed_rpm(std::uint32_t frequency_word, bool direction_bit) {
-  if (frequency_word == 0 || frequency_word >= kSlowestWord) {
+double published_speed_rpm(double frequency_word, bool direction_bit) {
+  if (frequency_word <= 0 || frequency_word >= kSlowestWord) {
     return 0;
   }
   const SpeedMap& map = direction_bit ? kNegativeRpm : kPositiveRpm;
-  const std::uint32_t below_slowest = kSlowestWord - frequency_word;
-  const std::size_t point = below_slowest / kWordStep;
+  const double steps = (kSlowestWord - frequency_word) / kWordStep;
+  const auto point = static_cast<std::size_t>(steps);
   if (point >= kMapPoints - 1) {
     return map.back();
   }
-  const double fraction = static_cast<double>(below_slowest % kWordStep) / kWordStep;
-  return map[point] + fraction * (map[point + 1] - map[point]);
+  return map[point] + (steps - static_cast<double>(point)) * (map[point + 1] - map[point]);
 }
 
 Motor::Motor(const ilk_axis_config_t& axis, const AxisParameters& parameters)
@@ -41,29 +41,41 @@ Motor::Motor(const ilk_axis_config_t& axis, const AxisParameters& parameters)
       direction_bit_is_decreasing_(axis.motor_direction != 0),
       max_drive_(axis.max_drive),
       max_amplitude_(axis.max_amplitude),
-      dead_zone_(parameters.dead_zone_fraction * axis.max_drive),
-      full_speed_(parameters.full_speed_counts_per_s),
-      counts_per_revolution_(parameters.counts_per_revolution) {}
+      counts_per_revolution_(parameters.counts_per_revolution) {
+  take(parameters);
+}
 
 void Motor::take(const AxisParameters& parameters) {
   dead_zone_ = parameters.dead_zone_fraction * max_drive_;
   full_speed_ = parameters.full_speed_counts_per_s;
+  load_ = parameters.load_fraction;
+  heat_droop_ = parameters.heat_droop_fraction;
+  resonance_words_ = parameters.resonance_hz * kWordsPerHz;
+  drift_words_ = parameters.resonance_drift_hz * kWordsPerHz;
 }
 
-double Motor::magnitude(const wire::MotorCommand& command) const {
+double Motor::magnitude(const wire::MotorCommand& command, double warmth) const {
   if (high_frequency_) {
-    const double strength = std::min(1.0, command.amplitude / max_amplitude_);
-    return published_speed_rpm(command.level, command.direction_bit) / 60 * counts_per_revolution_ * strength;
+    const double word = command.level - resonance_words_ + drift_words_ * warmth;
+    return published_speed_rpm(word, command.direction_bit) / 60 * counts_per_revolution_ * effort(command);
   }
   return std::max(0.0, (command.level - dead_zone_) / (max_drive_ - dead_zone_)) * full_speed_;
 }
 
-double Motor::speed(const wire::MotorCommand& command) const {
+double Motor::effort(const wire::MotorCommand& command) const {
+  if (!command.amplifier_enabled || command.level == 0) {
+    return 0;
+  }
+  return std::min(1.0, high_frequency_ ? command.amplitude / max_amplitude_ : command.level / max_drive_);
+}
+
+double Motor::speed(const wire::MotorCommand& command, double warmth) const {
   if (!command.amplifier_enabled || command.level == 0) {
     return 0;
   }
   const bool decreasing = (command.direction_bit == direction_bit_is_decreasing_) != reversed_;
-  return decreasing ? -magnitude(command) : magnitude(command);
+  const double speed = magnitude(command, warmth) * (1 - heat_droop_ * warmth);
+  return decreasing ? -speed * (1 + load_) : speed * (1 - load_);
 }
 
 }  // namespace interlock::plant

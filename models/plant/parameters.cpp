@@ -8,19 +8,18 @@ namespace {
 
 constexpr double kMicrosecondsPerMs = 1000;
 
+/** A knob of a member that the file has in the same unit. */
+template <double AxisParameters::* Member>
+constexpr AxisKnob knob(std::string_view name, Range range) {
+  return {name, range, false, [](const AxisParameters& axis) { return axis.*Member; },
+          [](AxisParameters& axis, double value) { axis.*Member = value; }};
+}
+
 }  // namespace
 
 const std::array<AxisKnob, kAxisKnobCount> kAxisKnobs{{
-    {"dead_zone_fraction",
-     {0, 0.9},
-     false,
-     [](const AxisParameters& axis) { return axis.dead_zone_fraction; },
-     [](AxisParameters& axis, double value) { axis.dead_zone_fraction = value; }},
-    {"full_speed_counts_per_s",
-     {1, 1e6},
-     false,
-     [](const AxisParameters& axis) { return axis.full_speed_counts_per_s; },
-     [](AxisParameters& axis, double value) { axis.full_speed_counts_per_s = value; }},
+    knob<&AxisParameters::dead_zone_fraction>("dead_zone_fraction", {0, 0.9}),
+    knob<&AxisParameters::full_speed_counts_per_s>("full_speed_counts_per_s", {1, 1e6}),
     {"lag_ms",
      {0.1, 1000},
      false,
@@ -28,21 +27,19 @@ const std::array<AxisKnob, kAxisKnobCount> kAxisKnobs{{
      [](AxisParameters& axis, double value) {
        axis.lag = Microseconds(static_cast<std::uint64_t>(std::llround(value * kMicrosecondsPerMs)));
      }},
-    {"backlash_counts",
-     {0, 1000},
-     false,
-     [](const AxisParameters& axis) { return axis.backlash_counts; },
-     [](AxisParameters& axis, double value) { axis.backlash_counts = value; }},
+    knob<&AxisParameters::backlash_counts>("backlash_counts", {0, 1000}),
+    knob<&AxisParameters::tool_play_counts>("tool_play_counts", {0, 1000}),
+    knob<&AxisParameters::load_fraction>("load_fraction", {-0.9, 0.9}),
+    knob<&AxisParameters::heat_droop_fraction>("heat_droop_fraction", {0, 0.9}),
+    knob<&AxisParameters::heat_time_s>("heat_time_s", {0.1, 1e5}),
+    knob<&AxisParameters::resonance_hz>("resonance_hz", {-5000, 5000}),
+    knob<&AxisParameters::resonance_drift_hz>("resonance_drift_hz", {0, 5000}),
     {"noise_counts",
      {0, 100},
      true,
      [](const AxisParameters& axis) { return static_cast<double>(axis.noise_counts); },
      [](AxisParameters& axis, double value) { axis.noise_counts = static_cast<std::uint32_t>(value); }},
-    {"noise_chance",
-     {0, 1},
-     false,
-     [](const AxisParameters& axis) { return axis.noise_chance; },
-     [](AxisParameters& axis, double value) { axis.noise_chance = value; }},
+    knob<&AxisParameters::noise_chance>("noise_chance", {0, 1}),
 }};
 
 double coast_counts(const AxisParameters& axis) {

@@ -32,10 +32,17 @@ struct AxisParameters {
   double counts_per_revolution = 5000.0 / 3; /**< HIGH_FREQUENCY only: scales the published speed map */
   Microseconds lag{5000};                    /**< time constant of the speed; coasting is speed times lag */
   double backlash_counts = 1;                /**< play between motor and encoder */
-  std::uint32_t noise_counts = 1;            /**< peak-to-peak noise of the counter */
-  double noise_chance = 0.001;               /**< that a reading is `noise_counts` off */
-  double end_margin_counts = 60;             /**< from the soft limits to the mechanical end stops */
-  double switch_hysteresis_counts = 3;       /**< from the edge back to where the switch opens */
+  double tool_play_counts = 0;               /**< play between encoder and tool */
+  double load_fraction = 0;            /**< of the speed, that a load takes from motion to larger positions
+                                          and adds to motion to smaller ones */
+  double heat_droop_fraction = 0;      /**< of the speed, that a motor has lost once it is warm */
+  double heat_time_s = 60;             /**< in which a motor under full drive warms, and cools at rest */
+  double resonance_hz = 0;             /**< HIGH_FREQUENCY only: above the published one; negative below */
+  double resonance_drift_hz = 0;       /**< and as much more below it once it is warm */
+  std::uint32_t noise_counts = 1;      /**< peak-to-peak noise of the counter */
+  double noise_chance = 0.001;         /**< that a reading is `noise_counts` off */
+  double end_margin_counts = 60;       /**< from the soft limits to the mechanical end stops */
+  double switch_hysteresis_counts = 3; /**< from the edge back to where the switch opens */
   Microseconds switch_bounce{2000};
 
   bool operator==(const AxisParameters&) const = default;
@@ -57,7 +64,7 @@ struct AxisKnob {
   void (*set)(AxisParameters&, double);
 };
 
-inline constexpr std::size_t kAxisKnobCount = 6;
+inline constexpr std::size_t kAxisKnobCount = 12;
 extern const std::array<AxisKnob, kAxisKnobCount> kAxisKnobs;
 
 /** How far an axis coasts from full speed after its amplifier went off. */

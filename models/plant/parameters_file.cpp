@@ -22,6 +22,17 @@ void read_knob(Reader& reader, const toml::table& table, const AxisKnob& knob, A
   knob.set(axis, value);
 }
 
+/** Of `[defaults]` and `[[axis]]`. */
+std::vector<std::string_view> dynamics_keys() {
+  std::vector<std::string_view> keys;
+  for (const AxisKnob& knob : kAxisKnobs) {
+    keys.push_back(knob.name);
+  }
+  keys.insert(keys.end(),
+              {"counts_per_revolution", "end_margin_counts", "switch_hysteresis_counts", "switch_bounce_ms"});
+  return keys;
+}
+
 void read_dynamics(Reader& reader, const toml::table& table, AxisParameters& axis) {
   for (const AxisKnob& knob : kAxisKnobs) {
     read_knob(reader, table, knob, axis);
@@ -31,17 +42,6 @@ void read_dynamics(Reader& reader, const toml::table& table, AxisParameters& axi
   reader.number(table, "switch_hysteresis_counts", {0, 1000}, axis.switch_hysteresis_counts);
   reader.milliseconds(table, "switch_bounce_ms", {0, 100}, axis.switch_bounce);
 }
-
-constexpr std::array<std::string_view, 10> kDynamicsKeys = {"dead_zone_fraction",
-                                                            "full_speed_counts_per_s",
-                                                            "counts_per_revolution",
-                                                            "lag_ms",
-                                                            "backlash_counts",
-                                                            "noise_counts",
-                                                            "noise_chance",
-                                                            "end_margin_counts",
-                                                            "switch_hysteresis_counts",
-                                                            "switch_bounce_ms"};
 
 void read_start(Reader& reader, const toml::table& table, const ilk_axis_config_t& robot,
                 AxisParameters& axis) {
@@ -69,7 +69,7 @@ void read_start(Reader& reader, const toml::table& table, const ilk_axis_config_
 
 void read_axis(Reader& reader, const toml::table& table, const ilk_config_t& robot,
                const AxisParameters& defaults, Parameters& parameters, std::bitset<ILK_SLOTS>& found) {
-  reader.only(table, {"slot", "name", "start_counts", "start_from_switch_counts"}, kDynamicsKeys);
+  reader.only(table, {"slot", "name", "start_counts", "start_from_switch_counts"}, dynamics_keys());
   std::uint32_t slot = 0;
   if (!reader.integer(table, "slot", {0, ILK_SLOTS - 1}, slot)) {
     reader.fail(table, "slot", "expected the slot of the axis, 0 to 9");
@@ -95,7 +95,7 @@ void read_axis(Reader& reader, const toml::table& table, const ilk_config_t& rob
 void read_axes(Reader& reader, const toml::table& document, const ilk_config_t& robot,
                Parameters& parameters) {
   const toml::table& defaults_table = reader.section(document, "defaults");
-  reader.only(defaults_table, {}, kDynamicsKeys);
+  reader.only(defaults_table, dynamics_keys());
   AxisParameters defaults;
   read_dynamics(reader, defaults_table, defaults);
 

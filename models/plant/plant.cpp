@@ -198,7 +198,7 @@ void Plant::touch(Microseconds elapsed) {
   }
   AxisPositions positions{};
   for (std::size_t slot = 0; slot < ILK_SLOTS; ++slot) {
-    positions[slot] = stations_[slot] ? stations_[slot]->position_counts() : 0.0;
+    positions[slot] = stations_[slot] ? stations_[slot]->tool_counts() : 0.0;
   }
   surroundings_->advance(positions, elapsed);
   for (const SensorLoad& load : surroundings_->loads()) {

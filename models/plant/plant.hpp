@@ -40,6 +40,7 @@ struct Station {
   Random switch_bounce;
 
   double position_counts() const { return axis ? axis->position_counts() : 0; }
+  double tool_counts() const { return axis ? axis->tool_counts() : 0; }
 
   /** The axis of a motor card and its encoder have these parameters from now on. */
   void take(const AxisParameters& parameters) {

@@ -48,14 +48,21 @@ struct SceneParameters {
   ForceInput tip;        /**< pressed by the tissue */
   double entry_mm = 0.0; /**< position of the insertion at which the tip touches the skin */
   double curvature_per_mm = 0.0041;
-  double wander_rad = 0.0; /**< by which tissue turns the way ahead, after a millimetre */
+  double wander_rad = 0.0;        /**< by which tissue turns the way ahead, after a millimetre */
+  double bevel_rad = 0.0;         /**< angle of the bevel when the rotation says 0 */
+  double torsion_play_rad = 0.0;  /**< by which hub and tip may differ before the tip turns, either way */
+  double windup_rad_per_mm = 0.0; /**< and as much more for each mm in tissue */
   double texture_n = 0.05;
   std::vector<TissueLayer> layers;       /**< from the skin, at least one */
   std::vector<TissueMembrane> membranes; /**< by depth */
   std::array<double, 3> target_mm{0.0, 0.0, 50.0};
+  double dragged_share = 0.0; /**< of the depth, by which the needle pushes the target ahead */
   double image_period_s = 2.0;
   double image_age_s = 1.0;
   double image_deviation_mm = 0.5;
+  double image_tip_bias_mm = 0.0;  /**< by which the artefact of the needle lies beside the tip, along x */
+  double image_breathing_mm = 0.0; /**< amplitude by which a breath moves all that is seen, along y */
+  double image_breath_s = 4.3;     /**< a breath lasts */
 };
 
 }  // namespace interlock::plant

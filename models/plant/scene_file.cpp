@@ -41,11 +41,14 @@ ForceInput read_force_input(Reader& reader, const toml::table& table, const Para
 
 void read_needle(Reader& reader, const toml::table& table, const ilk_config_t& robot,
                  const Parameters& parameters, SceneParameters& scene) {
-  reader.only(table, {"entry_mm", "curvature_per_mm", "wander_rad", "texture_n", "insertion", "rotation",
-                      "hand", "tip"});
+  reader.only(table, {"entry_mm", "curvature_per_mm", "wander_rad", "bevel_rad", "torsion_play_rad",
+                      "windup_rad_per_mm", "texture_n", "insertion", "rotation", "hand", "tip"});
   reader.number(table, "entry_mm", {0, kDeepest}, scene.entry_mm);
   reader.number(table, "curvature_per_mm", {0, 0.1}, scene.curvature_per_mm);
   reader.number(table, "wander_rad", {0, 0.1}, scene.wander_rad);
+  reader.number(table, "bevel_rad", {-4, 4}, scene.bevel_rad);
+  reader.number(table, "torsion_play_rad", {0, 4}, scene.torsion_play_rad);
+  reader.number(table, "windup_rad_per_mm", {0, 0.1}, scene.windup_rad_per_mm);
   reader.number(table, "texture_n", {0, 10}, scene.texture_n);
   for (const char* part : {"insertion", "rotation", "hand", "tip"}) {
     if (!table.contains(part)) {
@@ -89,9 +92,10 @@ void read_membranes(Reader& reader, const toml::table& document, SceneParameters
 }
 
 void read_target(Reader& reader, const toml::table& table, SceneParameters& scene) {
-  reader.only(table, {"position_mm"});
+  reader.only(table, {"position_mm", "dragged_share"});
+  reader.number(table, "dragged_share", {0, 1}, scene.dragged_share);
   const toml::array* position = table["position_mm"].as_array();
-  if (table.empty()) {
+  if (!table.contains("position_mm")) {
     return;
   }
   if (position == nullptr || position->size() != scene.target_mm.size()) {
@@ -109,10 +113,13 @@ void read_target(Reader& reader, const toml::table& table, SceneParameters& scen
 }
 
 void read_image(Reader& reader, const toml::table& table, SceneParameters& scene) {
-  reader.only(table, {"period_s", "age_s", "deviation_mm"});
+  reader.only(table, {"period_s", "age_s", "deviation_mm", "tip_bias_mm", "breathing_mm", "breath_s"});
   reader.number(table, "period_s", {0.01, 100}, scene.image_period_s);
   reader.number(table, "age_s", {0, 100}, scene.image_age_s);
   reader.number(table, "deviation_mm", {0, 10}, scene.image_deviation_mm);
+  reader.number(table, "tip_bias_mm", {-50, 50}, scene.image_tip_bias_mm);
+  reader.number(table, "breathing_mm", {0, 50}, scene.image_breathing_mm);
+  reader.number(table, "breath_s", {0.5, 60}, scene.image_breath_s);
 }
 
 }  // namespace

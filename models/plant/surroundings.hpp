@@ -13,7 +13,7 @@
 
 namespace interlock::plant {
 
-/** Positions by slot, in counts; 0 where there is no axis. */
+/** Positions of the tool by slot, in counts; 0 where there is no axis. */
 using AxisPositions = std::array<double, ILK_SLOTS>;
 
 /** By so much the analog input of a sensor card reads more. */

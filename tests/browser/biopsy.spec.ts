@@ -1,4 +1,7 @@
 /** The prostate robot's biopsy panel: forces, membranes, and a biopsy that waits for the pedal. */
+import { readFileSync } from "node:fs";
+import path from "node:path";
+import type { ConsolePage } from "./console_page";
 import { expect, test } from "./fixtures";
 
 test.use({ robotName: "prostate" });
@@ -27,9 +30,8 @@ test("forces are shown and zeroed, membranes set and reset", async ({ robot }) =
   await expect(panel.getByRole("alert")).toContainText("Refused: DISABLED");
 });
 
-test("a hand pushes the needle through its first membrane, and letting the pedal go holds it", async ({
-  robot,
-}) => {
+/** A biopsy begins, and a hand presses on the force sensor. */
+async function pushNeedle(robot: ConsolePage) {
   const [rotation, insertion] = [robot.axis("Needle rotation"), robot.axis("Needle insertion")];
   await robot.unlockRobot();
   await rotation.setHome();
@@ -51,6 +53,13 @@ test("a hand pushes the needle through its first membrane, and letting the pedal
   const hand = robot.panel("Bench").getByRole("group", { name: /^Sensor .*, input 2$/ });
   await hand.getByRole("spinbutton").fill("565");
   await hand.getByRole("button", { name: "Press" }).click();
+  return { panel, insertion };
+}
+
+test("a hand pushes the needle through its first membrane, and letting the pedal go holds it", async ({
+  robot,
+}) => {
+  const { panel, insertion } = await pushNeedle(robot);
   const membranes = panel.getByRole("list", { name: "Membranes" }).getByRole("listitem");
   await expect(membranes.first()).toHaveText(/^25 mm: passed, found at 2[3-7]\.\d mm$/);
 
@@ -60,4 +69,16 @@ test("a hand pushes the needle through its first membrane, and letting the pedal
   expect(await insertion.restingCounts()).toBe(held);
   await robot.button("Abort proposal 2").click();
   await expect(robot.proposal(2)).toContainText("aborted");
+});
+
+test.describe("in rough tissue", () => {
+  const plant = readFileSync(path.join(__dirname, "../../models/plant/prostate.toml"), "utf8");
+  test.use({ plant: plant.replace(/^texture_n = .*$/m, "texture_n = 0.4") });
+
+  test("the page says of rough tissue that no membrane can be told from it", async ({ robot }) => {
+    const { panel } = await pushNeedle(robot);
+    const needle = panel.locator(".biopsy-now");
+    await expect(needle.getByRole("alert")).toContainText("membranes cannot be told from tissue");
+    await robot.releasePedal();
+  });
 });

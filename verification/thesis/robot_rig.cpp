@@ -1,6 +1,7 @@
 #include "robot_rig.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <iterator>
 #include <memory>
@@ -195,10 +196,21 @@ AxisPositions RobotRig::positions() const {
   return positions;
 }
 
+double RobotRig::homing_counts() const {
+  double farthest = 0.0;
+  for (const Axis& axis : robot_.axes) {
+    if (axis.homing) {
+      const double read = loop_.state().axis[axis.slot].position_counts;
+      farthest = std::max(farthest, std::abs(std::floor(loop_.true_position(axis.slot)) - read));
+    }
+  }
+  return farthest;
+}
+
 AxisPositions RobotRig::true_positions() const {
   AxisPositions positions;
   for (const Axis& axis : robot_.axes) {
-    positions.push_back(loop_.true_position(axis.slot) / axis.counts_per_unit);
+    positions.push_back(loop_.true_tool(axis.slot) / axis.counts_per_unit);
   }
   return positions;
 }

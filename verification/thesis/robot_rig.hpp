@@ -55,7 +55,11 @@ class RobotRig {
   /** Where the axes are as the kernel reads them, in their units and order. */
   [[nodiscard]] AxisPositions positions() const;
 
-  /** Where the axes truly are, in their units and order: what a scan would show. */
+  /** How far an axis with a switch truly is from where the kernel reads it, at most, beyond the count that a
+   * reading leaves open. */
+  [[nodiscard]] double homing_counts() const;
+
+  /** Where the tools of the axes truly are, in their units and order: what a scan would show. */
   [[nodiscard]] AxisPositions true_positions() const;
 
   /** Simulated time. */

@@ -37,6 +37,37 @@ Registration random_registration(std::mt19937_64& random) {
   return Registration::create(row_major(pose)).value();
 }
 
+/** About the zFrame of the robot, mm, none on a line with the others. */
+const std::vector<Eigen::Vector3d> fiducials{
+    {-40, 0, 0}, {40, 0, 10}, {-30, 60, 0}, {35, 50, 40}, {0, 20, 60}};
+
+/** A registration as it was found, and how well it fits. */
+struct FoundRegistration {
+  Registration registration;
+  std::optional<RegistrationFit> fit; /**< nothing: it is the true one */
+};
+
+FoundRegistration found_registration(const Registration& truth, double fiducial_sd_mm,
+                                     std::mt19937_64& random) {
+  if (fiducial_sd_mm == 0.0) {
+    return {truth, std::nullopt};
+  }
+  std::normal_distribution<double> off_mm(0.0, fiducial_sd_mm);
+  const auto count = static_cast<Eigen::Index>(fiducials.size());
+  Eigen::Matrix3Xd on_robot(3, count);
+  Eigen::Matrix3Xd seen(3, count);
+  RegistrationFit fit;
+  for (Eigen::Index each = 0; each < count; ++each) {
+    on_robot.col(each) = fiducials[static_cast<std::size_t>(each)];
+    seen.col(each) = truth.scanner_from_zframe() * on_robot.col(each) +
+                     Eigen::Vector3d(off_mm(random), off_mm(random), off_mm(random));
+    fit.fiducials_mm.emplace_back(seen.col(each));
+  }
+  const Pose found(Eigen::umeyama(on_robot, seen, false));
+  fit.residual_mm = std::sqrt((seen - found * on_robot).colwise().squaredNorm().mean());
+  return {Registration::create(row_major(found)).value(), fit};
+}
+
 /** After so many the last one stays, however far off. */
 constexpr std::size_t most_insertions = 3;
 
@@ -79,17 +110,24 @@ PathProgram removal_of(const Robot& robot) {
 /** Everything that a target needs. */
 class Demo {
  public:
-  Demo(const Robot& robot, const RobotKinematics& kinematics, RobotRig& rig, const Registration& registration,
-       const MechanicalError& mechanical, const DemoOptions& options, const DemoAudience& audience)
+  /** @param truth where the robot stands in the scanner */
+  Demo(const Robot& robot, const RobotKinematics& kinematics, const RobotKinematics& true_kinematics,
+       RobotRig& rig, const Registration& truth, const DemoOptions& options, const DemoAudience& audience)
       : robot_(robot),
         kinematics_(kinematics),
+        true_kinematics_(true_kinematics),
         rig_(rig),
-        registration_(registration),
-        mechanical_(mechanical),
+        truth_(truth),
         options_(options),
         audience_(audience),
-        // Chance of its own: the random targets are the same with and without an injected error.
-        random_(options.seed + 1) {}
+        // Chance of its own: the random targets are the same with and without other errors.
+        random_(options.seed + 1),
+        tracking_(robot.axes.size()) {}
+
+  /** Another registration, and what is expected of it from now on. */
+  void register_anew() { registered_ = found_registration(truth_, options_.fiducial_sd_mm, random_); }
+
+  [[nodiscard]] const std::vector<Tracking>& tracking() const { return tracking_; }
 
   /** @param name of the visit, for files; empty: its motions are not shown */
   DemoResult<DemoTrial> carry_out(std::size_t target, const std::string& name) {
@@ -116,7 +154,7 @@ class Demo {
   /** An error in the scanner's frame, in the axes of the table. */
   [[nodiscard]] Eigen::Vector3d in_table(const Eigen::Vector3d& error) const {
     return zframe_from_table(robot_).transpose() *
-           (registration_.scanner_from_zframe().linear().transpose() * error);
+           (truth_.scanner_from_zframe().linear().transpose() * error);
   }
 
  private:
@@ -129,7 +167,7 @@ class Demo {
   /** Aims, inserts and scans, until the target is met or was tried often enough. */
   DemoResult<DemoTrial> reach(std::size_t target) {
     const ThesisTrial& trial = thesis_table(robot_).trials[target - 1];
-    const Pose& scanner = registration_.scanner_from_zframe();
+    const Pose& scanner = truth_.scanner_from_zframe();
     const Way way = way_of(robot_, trial);
     DemoTrial done{.target = target,
                    .desired = scanner * way.target,
@@ -144,8 +182,11 @@ class Demo {
     Eigen::Vector3d seen_off = Eigen::Vector3d::Zero();
     Eigen::Vector3d correction = Eigen::Vector3d::Zero();
     while (done.reached.size() < most) {
-      const auto alignment = align(robot_, kinematics_, registration_,
-                                   {scanner * way.entry + correction, done.desired + correction, 0.0});
+      const auto alignment = align(robot_, kinematics_, registered_.registration,
+                                   {scanner * way.entry + correction,
+                                    done.desired + correction,
+                                    0.0,
+                                    {registered_.fit, std::nullopt}});
       if (!alignment || is_clamped(*alignment)) {
         if (done.reached.empty()) {
           done.refused =
@@ -158,6 +199,12 @@ class Demo {
         return tl::unexpected(reached.error());
       }
       done.reached.push_back(*reached);
+      if (done.reached.size() == 1 && alignment->error_budget) {
+        const ErrorEllipsoid& claim = alignment->error_budget->treatment;
+        const Eigen::Vector3d off = claim.directions.transpose() * (*reached - claim.centre_mm);
+        done.claimed_mm = claim.half_axes_mm.x();
+        done.within_claim = off.cwiseQuotient(claim.half_axes_mm).norm() <= 1.0;
+      }
       if (done.error().norm() <= options_.tolerance_mm) {
         return done;
       }
@@ -170,8 +217,8 @@ class Demo {
 
   /** Takes the probe out, aligns and inserts; where the scan then shows the treatment point. */
   DemoResult<Eigen::Vector3d> insert(const Alignment& alignment, const DemoTrial& trial) {
-    const auto reached = rig_.carry_out(confirmed(pose_program(robot_, alignment, true))).and_then([&] {
-      return kinematics_.zframe_from_treatment(rig_.true_positions())
+    const auto reached = rig_.carry_out(confirmed(program_of(alignment, true))).and_then([&] {
+      return true_kinematics_.zframe_from_treatment(rig_.true_positions())
           .map([this](const Pose& pose) { return scanned(pose.translation()); })
           .map_error([](const KinematicsError& error) { return error.message(); });
     });
@@ -181,30 +228,34 @@ class Demo {
 
   /** Takes the needle out, lines up, and has it pushed to the target; where the scan then shows its tip. */
   DemoResult<Eigen::Vector3d> push(const Alignment& alignment, const Way& way, DemoTrial& trial) {
-    const auto lined_up = rig_.carry_out(pose_program(robot_, alignment, false));
+    const auto lined_up = rig_.carry_out(program_of(alignment, false));
     show("alignment");
-    return lined_up.and_then([&] { return guide(rig_.positions()); })
+    return lined_up.and_then([&] { return guide(kinematics_, rig_.positions()); })
         .and_then(
             [&](const Pose& planned) { return rig_.take_biopsy(planned.inverse() * way.target, random_()); })
         .and_then([&](const NeedleInsertion& pushed) {
           show("biopsy");
           trial.biopsy = pushed;
-          return guide(rig_.true_positions()).map([&](const Pose& pose) {
+          return guide(true_kinematics_, rig_.true_positions()).map([&](const Pose& pose) {
             return scanned(pose * pushed.tip_mm);
           });
         });
   }
 
-  [[nodiscard]] DemoResult<Pose> guide(const AxisPositions& positions) const {
-    return zframe_from_guide(robot_, kinematics_, positions).map_error([](const KinematicsError& error) {
+  [[nodiscard]] PathProgram program_of(const Alignment& alignment, bool insert) const {
+    return arriving_from_below(robot_, pose_program(robot_, alignment, insert));
+  }
+
+  [[nodiscard]] DemoResult<Pose> guide(const RobotKinematics& kinematics,
+                                       const AxisPositions& positions) const {
+    return zframe_from_guide(robot_, kinematics, positions).map_error([](const KinematicsError& error) {
       return error.message();
     });
   }
 
   /** A point of the zFrame as a scan shows it. */
-  [[nodiscard]] Eigen::Vector3d scanned(const Eigen::Vector3d& in_zframe) {
-    return registration_.scanner_from_zframe() *
-           (in_zframe + zframe_from_table(robot_) * mechanical_.draw(random_));
+  [[nodiscard]] Eigen::Vector3d scanned(const Eigen::Vector3d& in_zframe) const {
+    return truth_.scanner_from_zframe() * in_zframe;
   }
 
   DemoResult<void> ablate(DemoTrial& trial) {
@@ -221,22 +272,51 @@ class Demo {
     return done;
   }
 
-  void show(const std::string& motion) const {
-    if (!name_.empty()) {
-      audience_.motion(name_ + "-" + motion, rig_.record());
+  void show(const std::string& motion) {
+    if (name_.empty()) {
+      return;
+    }
+    const MotionRecord& record = rig_.record();
+    audience_.motion(name_ + "-" + motion, record);
+    for (std::size_t axis = 0; axis < record.axes.size(); ++axis) {
+      for (const AxisSample& sample : record.axes[axis]) {
+        if (sample.setpoint) {
+          const double off = std::abs(sample.setpoint->position_counts - sample.position_counts);
+          tracking_[axis].squares += off * off;
+          tracking_[axis].worst_counts = std::max(tracking_[axis].worst_counts, off);
+          ++tracking_[axis].samples;
+        }
+      }
     }
   }
 
   const Robot& robot_;
   const RobotKinematics& kinematics_;
+  const RobotKinematics& true_kinematics_;
   RobotRig& rig_;
-  const Registration& registration_;
-  const MechanicalError& mechanical_;
+  const Registration& truth_;
+  FoundRegistration registered_;
   const DemoOptions& options_;
   const DemoAudience& audience_;
   std::mt19937_64 random_;
+  std::vector<Tracking> tracking_;
   std::string name_;
 };
+
+/** With each axis that has a switch anywhere in the half of its range before that. */
+plant::Parameters scattered(plant::Parameters parameters, const Robot& robot, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  for (const Axis& axis : robot.axes) {
+    if (axis.homing) {
+      const auto [low, high] = axis.soft_limits;
+      const std::int32_t middle = low + (high - low) / 2;
+      parameters.axis[axis.slot].start_counts =
+          axis.limit == ILK_LIMIT_UPPER ? std::uniform_real_distribution<double>(middle, high)(random)
+                                        : std::uniform_real_distribution<double>(low, middle)(random);
+    }
+  }
+  return parameters;
+}
 
 /** Positions of all axes, each within what the kernel accepts. */
 AxisPositions random_positions(const Robot& robot, std::mt19937_64& random) {
@@ -302,18 +382,21 @@ DemoResult<DemoReport> run_demo(const Robot& described, const plant::Parameters&
   if (!kinematics) {
     return tl::unexpected(kinematics.error().message());
   }
+  const auto true_kinematics = RobotKinematics::create(options.true_robot.value_or(robot));
+  if (!true_kinematics) {
+    return tl::unexpected(true_kinematics.error().message());
+  }
   std::mt19937_64 random(options.seed);
   const Registration registration = random_registration(random);
-  RobotRig rig(robot, parameters, options.seed);
+  RobotRig rig(robot, options.scattered ? scattered(parameters, robot, options.seed) : parameters,
+               options.seed);
   audience.progress("homing");
   if (const auto ready = rig.make_ready(); !ready) {
     return tl::unexpected(ready.error());
   }
   DemoReport report;
-  if (options.mechanical_error) {
-    report.injected = published_error(robot);
-  }
-  Demo demo(robot, *kinematics, rig, registration, report.injected, options, audience);
+  report.homing_counts = rig.homing_counts();
+  Demo demo(robot, *kinematics, *true_kinematics, rig, registration, options, audience);
   std::vector<Eigen::Vector3d> first_errors;
   std::vector<Eigen::Vector3d> last_errors;
   const std::size_t targets = thesis_table(robot).trials.size();
@@ -321,6 +404,9 @@ DemoResult<DemoReport> run_demo(const Robot& described, const plant::Parameters&
     const std::string name = "target " + std::to_string(visit % targets + 1) +
                              (options.rounds == 1 ? "" : ", round " + std::to_string(visit / targets + 1));
     audience.progress(name);
+    if (visit % targets == 0) {
+      demo.register_anew();
+    }
     auto done = demo.carry_out(visit % targets + 1,
                                visit < targets ? "target-" + std::to_string(visit + 1) : std::string());
     if (!done) {
@@ -332,10 +418,11 @@ DemoResult<DemoReport> run_demo(const Robot& described, const plant::Parameters&
     }
     report.trials.push_back(std::move(*done));
   }
+  report.tracking = demo.tracking();
   report.first_scan = distribution_of(first_errors);
   report.last_scan = distribution_of(last_errors);
   report.thesis = published_distribution(robot);
-  if (options.targeting_only && !robot.draping.empty()) {
+  if (options.rounds > 0 && options.targeting_only && !robot.draping.empty()) {
     audience.progress("draping");
     const PathProgram removal{{MoveLeg{robot.draping, 0.0, 0.0}}};
     if (const auto draped = rig.carry_out(removal); !draped) {

@@ -13,8 +13,9 @@
  * the thesis' tables.
  *
  * The scan is the true pose of the simulated robot, or the true tip of its needle in tissue, so that the
- * error is that of the robot: homing, counts, deadbands, backlash, the bending of the needle, and if asked
- * for a mechanical error behind the encoders. Points and errors are in the scanner's RAS frame, mm.
+ * error is that of the robot: homing, counts, deadbands, play, the bending of the needle; if asked for, of
+ * kinematics that are not those of its file, and of a registration by fiducials that were seen where they are
+ * not. Points and errors are in the scanner's RAS frame, mm.
  */
 #pragma once
 
@@ -25,6 +26,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/robot.hpp"
 #include "robot_rig.hpp"
 #include "targeting_errors.hpp"
 #include "thesis_trials.hpp"
@@ -37,9 +39,11 @@ struct DemoOptions {
   std::size_t random_targets = 10000; /**< reached by computation alone: setpoints in whole counts */
   std::size_t rounds = 1;             /**< how often each target of the table is visited */
   double tolerance_mm = 0.05;         /**< distance from the target at which an insertion stays */
-  bool mechanical_error = false;      /**< inject the published one */
-  bool targeting_only = false;        /**< no ablation, no biopsy */
-  double dwell_s = 2.0;               /**< of each step of an ablation */
+  double fiducial_sd_mm = 0.0; /**< of where fiducials are seen, each coordinate; each round registers anew */
+  std::optional<Robot> true_robot; /**< whose kinematics are the true ones; nothing: the robot's */
+  bool scattered = false;      /**< axes with a switch start anywhere in the half of their range before it */
+  bool targeting_only = false; /**< no ablation, no biopsy */
+  double dwell_s = 2.0;        /**< of each step of an ablation */
 };
 
 /** An ablation as it was carried out. */
@@ -58,6 +62,8 @@ struct DemoTrial {
   std::string refused;          /**< why it was not tried; empty: it was */
   std::optional<DemoAblation> ablation;
   std::optional<NeedleInsertion> biopsy;
+  double claimed_mm = 0.0; /**< longest half axis of the ellipsoid that was to hold 95 % of the first scans */
+  bool within_claim = false; /**< the first scan, for that matter */
 
   [[nodiscard]] Eigen::Vector3d first_error() const { return reached.front() - desired; }
   [[nodiscard]] Eigen::Vector3d error() const { return reached.back() - desired; }
@@ -71,11 +77,19 @@ struct RandomTargets {
   double worst_mm = 0.0;
 };
 
+/** How well axes followed their setpoints in the motions of the first round, by the readings, counts. */
+struct Tracking {
+  double squares = 0.0;
+  std::size_t samples = 0;
+  double worst_counts = 0.0;
+};
+
 /** What came of all trials. */
 struct DemoReport {
   std::vector<DemoTrial> trials;
-  MechanicalError injected;     /**< zero unless asked for */
-  ErrorDistribution first_scan; /**< as all of these in the axes of the table */
+  double homing_counts = 0.0; /**< farthest that an axis with a switch was from where homing said, truly */
+  std::vector<Tracking> tracking; /**< of each axis */
+  ErrorDistribution first_scan;   /**< as all of these in the axes of the table */
   ErrorDistribution last_scan;
   ErrorDistribution thesis;
   RandomTargets random;

@@ -6,41 +6,6 @@
 #include "thesis_trials.hpp"
 
 namespace interlock {
-namespace {
-
-std::vector<Eigen::Vector3d> published_errors(const Robot& robot) {
-  std::vector<Eigen::Vector3d> errors;
-  for (const ThesisTrial& trial : thesis_table(robot).trials) {
-    errors.push_back(trial.actual - trial.desired);
-  }
-  return errors;
-}
-
-}  // namespace
-
-Eigen::Vector3d MechanicalError::draw(std::mt19937_64& random) const {
-  std::normal_distribution<double> standard;
-  Eigen::Vector3d drawn = mean;
-  for (int axis = 0; axis < 3; ++axis) {
-    drawn(axis) += deviation(axis) * standard(random);
-  }
-  return drawn;
-}
-
-MechanicalError published_error(const Robot& robot) {
-  const std::vector<Eigen::Vector3d> errors = published_errors(robot);
-  const auto count = static_cast<double>(errors.size());
-  MechanicalError published;
-  for (const Eigen::Vector3d& error : errors) {
-    published.mean += error / count;
-  }
-  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& error : errors) {
-    squares += (error - published.mean).cwiseAbs2();
-  }
-  published.deviation = (squares / (count - 1.0)).cwiseSqrt();
-  return published;
-}
 
 ErrorDistribution distribution_of(const std::vector<Eigen::Vector3d>& errors) {
   ErrorDistribution distribution;
@@ -66,7 +31,11 @@ ErrorDistribution distribution_of(const std::vector<Eigen::Vector3d>& errors) {
 }
 
 ErrorDistribution published_distribution(const Robot& robot) {
-  return distribution_of(published_errors(robot));
+  std::vector<Eigen::Vector3d> errors;
+  for (const ThesisTrial& trial : thesis_table(robot).trials) {
+    errors.push_back(trial.actual - trial.desired);
+  }
+  return distribution_of(errors);
 }
 
 }  // namespace interlock

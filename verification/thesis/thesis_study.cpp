@@ -1,6 +1,7 @@
 // The thesis' targeting workflow on the simulated hardware, unattended. docs/demo.md tells what it shows.
 #include <CLI/CLI.hpp>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iomanip>
@@ -22,7 +23,9 @@ namespace {
 using nlohmann::ordered_json;
 
 struct StudyOptions {
-  std::string robot; /**< name of a robot, or its file */
+  std::string robot;           /**< name of a robot, or its file */
+  std::string true_robot;      /**< whose kinematics are true; empty: the robot's */
+  std::filesystem::path plant; /**< empty: the robot's */
   DemoOptions demo;
   std::filesystem::path csv;  /**< where the trials go; empty: nowhere */
   std::filesystem::path plot; /**< folder for the motions of the first round; empty: none */
@@ -60,6 +63,8 @@ ordered_json to_json(const DemoTrial& trial) {
     json["time_s"] = trial.time_s;
     json["ablation"] = to_json(trial.ablation);
     json["biopsy"] = to_json(trial.biopsy);
+    json["claimed_mm"] = trial.claimed_mm;
+    json["within_claim"] = trial.within_claim;
   }
   return json;
 }
@@ -71,30 +76,42 @@ ordered_json to_json(const ErrorDistribution& distribution) {
       {"p95_mm", distribution.p95_mm},         {"worst_mm", distribution.worst_mm}};
 }
 
+ordered_json to_json(const Robot& robot, const std::vector<Tracking>& tracking) {
+  ordered_json axes = ordered_json::object();
+  for (std::size_t place = 0; place < tracking.size(); ++place) {
+    const Tracking& axis = tracking[place];
+    if (axis.samples > 0) {
+      axes[robot.axes[place].name] = {
+          {"rms_counts", std::sqrt(axis.squares / static_cast<double>(axis.samples))},
+          {"worst_counts", axis.worst_counts}};
+    }
+  }
+  return axes;
+}
+
 ordered_json to_json(const Robot& robot, const DemoOptions& options, const DemoReport& report) {
   const ThesisTable& table = thesis_table(robot);
   ordered_json trials = ordered_json::array();
   for (const DemoTrial& trial : report.trials) {
     trials.push_back(to_json(trial));
   }
-  return {
-      {"robot", robot.name},
-      {"seed", options.seed},
-      {"table", table.title},
-      {"mapping", table.mapping},
-      {"trials", std::move(trials)},
-      {"tolerance_mm", options.tolerance_mm},
-      {"injected_error",
-       {{"mean_mm", numbers(report.injected.mean)}, {"deviation_mm", numbers(report.injected.deviation)}}},
-      {"distributions",
-       {{"first_scan", to_json(report.first_scan)},
-        {"last_scan", to_json(report.last_scan)},
-        {"thesis", to_json(report.thesis)}}},
-      {"random",
-       {{"tried", report.random.tried},
-        {"refused", report.random.refused},
-        {"rms_mm", report.random.rms_mm},
-        {"worst_mm", report.random.worst_mm}}}};
+  return {{"robot", robot.name},
+          {"seed", options.seed},
+          {"table", table.title},
+          {"mapping", table.mapping},
+          {"trials", std::move(trials)},
+          {"tolerance_mm", options.tolerance_mm},
+          {"homing_counts", report.homing_counts},
+          {"tracking", to_json(robot, report.tracking)},
+          {"distributions",
+           {{"first_scan", to_json(report.first_scan)},
+            {"last_scan", to_json(report.last_scan)},
+            {"thesis", to_json(report.thesis)}}},
+          {"random",
+           {{"tried", report.random.tried},
+            {"refused", report.random.refused},
+            {"rms_mm", report.random.rms_mm},
+            {"worst_mm", report.random.worst_mm}}}};
 }
 
 std::string three(const Eigen::Vector3d& point, const char* format) {
@@ -211,13 +228,15 @@ Result<void> make_folder(const std::filesystem::path& folder) {
   return {};
 }
 
-Result<DemoReport> report_of(const StudyOptions& options, const Robot& robot,
+Result<DemoReport> report_of(const StudyOptions& options, const DemoOptions& demo, const Robot& robot,
                              const Installation& installation) {
   const auto config = compile(robot);
   if (!config) {
     return tl::unexpected(refusal(config.error().message()));
   }
-  return installation.plant(robot.name).and_then([&](const std::filesystem::path& file) {
+  const Result<std::filesystem::path> plant_file =
+      options.plant.empty() ? installation.plant(robot.name) : options.plant;
+  return plant_file.and_then([&](const std::filesystem::path& file) {
     return plant::load_parameters(file, *config)
         .map_error(refusal)
         .and_then([&](const plant::Parameters& plant) {
@@ -227,9 +246,9 @@ Result<DemoReport> report_of(const StudyOptions& options, const Robot& robot,
               [&](const std::string& name, const MotionRecord& record) {
                 plotted = plotted.and_then([&] { return plot(options.plot, robot, name, record); });
               }};
-          return run_demo(robot, plant, options.demo, audience)
-              .map_error(refusal)
-              .and_then([&](DemoReport report) { return plotted.map([&] { return std::move(report); }); });
+          return run_demo(robot, plant, demo, audience).map_error(refusal).and_then([&](DemoReport report) {
+            return plotted.map([&] { return std::move(report); });
+          });
         });
   });
 }
@@ -241,8 +260,16 @@ Result<void> study(const StudyOptions& options) {
   if (!robot) {
     return tl::unexpected(robot.error());
   }
+  DemoOptions demo = options.demo;
+  if (!options.true_robot.empty()) {
+    const Result<Robot> true_robot = named_robot(options.true_robot, installation);
+    if (!true_robot) {
+      return tl::unexpected(true_robot.error());
+    }
+    demo.true_robot = *true_robot;
+  }
   return make_folder(options.plot)
-      .and_then([&] { return report_of(options, *robot, installation); })
+      .and_then([&] { return report_of(options, demo, *robot, installation); })
       .and_then([&](const DemoReport& report) {
         return write_file(options.csv, csv_of(report)).map([&] {
           std::cout << (options.json ? to_json(*robot, options.demo, report).dump() + '\n'
@@ -261,14 +288,21 @@ int main(int argc, char** argv) {
   cli.add_option("--random-targets", options.demo.random_targets, "Targets that are only computed")
       ->check(CLI::Range(0, 1000000))
       ->capture_default_str();
-  cli.add_option("--rounds", options.demo.rounds, "How often each target of the table is visited")
-      ->check(CLI::Range(1, 1000))
+  cli.add_option("--rounds", options.demo.rounds,
+                 "How often each target of the table is visited; 0: the robot homes only")
+      ->check(CLI::Range(0, 1000))
       ->capture_default_str();
   cli.add_option("--tolerance", options.demo.tolerance_mm, "Distance from the target that may stay, mm")
       ->check(CLI::Range(0.0, 100.0))
       ->capture_default_str();
-  cli.add_flag("--mechanical-error", options.demo.mechanical_error,
-               "Add the thesis' errors behind the encoders");
+  cli.add_option("--plant", options.plant, "The simulated robot: its motors, play, noise")
+      ->check(CLI::ExistingFile);
+  cli.add_option("--true-robot", options.true_robot, "Robot whose kinematics are the true ones");
+  cli.add_option("--fiducials", options.demo.fiducial_sd_mm,
+                 "Deviation of where fiducials are seen, mm: each round registers anew")
+      ->check(CLI::Range(0.0, 10.0));
+  cli.add_flag("--scattered", options.demo.scattered,
+               "Axes with a switch start anywhere in the half of their range before it");
   cli.add_flag("--targeting-only", options.demo.targeting_only,
                "Neither ablate nor have a hand push the needle: the thesis' tables");
   cli.add_option("--dwell", options.demo.dwell_s, "Rest at each angle and depth of an ablation, s")

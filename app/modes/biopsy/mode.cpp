@@ -234,6 +234,7 @@ bool BiopsyMode::listen(const ilk_snapshot_t& snapshot, std::uint32_t ticks) noe
   const double most_mm = fastest_sway_mm_s * ticks * period_s_;
   cue_mm_ += std::clamp(wanted_mm - cue_mm_, -most_mm, most_mm);
   now_.armed = heard.armed;
+  now_.rough = heard.rough;
   now_.cue = heard.cue_offset_mm != 0.0;
   insertion_.aim(cue_mm_, ticks == 0 ? 0.0 : (cue_mm_ - before_mm) / (ticks * period_s_), lease_s_);
   return true;

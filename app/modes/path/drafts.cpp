@@ -65,7 +65,7 @@ tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const json& ta
     }
     leg.targets.push_back({axis->slot, *counts});
   }
-  return task_of(RobotMode::coordinated, {{std::move(leg)}}, author);
+  return task_of(RobotMode::coordinated, arriving_from_below(robot, {{std::move(leg)}}), author);
 }
 
 tl::expected<Task, Problem> ablation_draft(const Robot& robot, const json& steps, const std::string& author) {
@@ -83,7 +83,7 @@ tl::expected<Task, Problem> ablation_draft(const Robot& robot, const json& steps
     }
     legs.emplace_back(*leg);
   }
-  return task_of(ablation_mode, {std::move(legs)}, author);
+  return task_of(ablation_mode, arriving_from_below(robot, {std::move(legs)}), author);
 }
 
 tl::expected<Task, Problem> coordinated_of(const json& body, const Robot& robot, const std::string& author) {
@@ -252,8 +252,9 @@ boost::asio::awaitable<tl::expected<Task, Problem>> pose_draft(const Context& co
   if (const auto miss = out_of_reach(context.robot, *alignment, request.accepted_mm, request.accepted_deg)) {
     co_return fail(*miss);
   }
-  Task task =
-      task_of(RobotMode::coordinated, pose_program(context.robot, *alignment, request.insert), author);
+  Task task = task_of(
+      RobotMode::coordinated,
+      arriving_from_below(context.robot, pose_program(context.robot, *alignment, request.insert)), author);
   task.targeting_revision = revision;
   task.aim = ReachedAim{alignment->desired, alignment->reachable, alignment->error_budget};
   co_return task;

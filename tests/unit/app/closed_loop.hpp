@@ -49,6 +49,9 @@ class ClosedLoop {
     return plant_.station(slot)->position_counts();
   }
 
+  /** True position of what the axis moves, behind the play of its tool. */
+  [[nodiscard]] double true_tool(std::uint32_t slot) const { return plant_.station(slot)->tool_counts(); }
+
   /** Declares every axis homed where it stands, enables them all and holds the pedal. */
   void make_all_ready();
 

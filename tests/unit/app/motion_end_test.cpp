@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <string>
 
 #include "closed_loop.hpp"
 #include "motion/rest_aim.hpp"
+#include "proposals/programs.hpp"
 
 namespace interlock {
 namespace {
@@ -177,6 +179,65 @@ TEST(MotionEnd, HomingWithAnEncoderThatDithersChangesNothing) {
       }
     }
   }
+}
+
+/** How far the tools are from the targets at most, after each of three motions of all axes. */
+double farthest_tool(const Robot& robot, const plant::Parameters& plant,
+                     const std::function<PathProgram(PathProgram)>& made) {
+  ClosedLoop loop(5, 1, robot, plant);
+  loop.make_all_ready();
+  double farthest = 0.0;
+  std::uint32_t task = 1;
+  for (const std::int32_t percent : {-20, 20, -5}) {
+    MoveLeg leg;
+    for (const Axis& axis : robot.axes) {
+      const std::int32_t range = axis.highest_setpoint_counts() - axis.lowest_setpoint_counts();
+      leg.targets.push_back({axis.slot, range * percent / 100});
+    }
+    EXPECT_EQ(loop.carry_out(++task, test::along(made({{leg}})), 2 * minute_ticks).phase, TaskPhase::done);
+    for (const AxisCounts& target : leg.targets) {
+      const double home = loop.true_position(target.slot) - loop.state().axis[target.slot].position_counts;
+      farthest = std::max(farthest, std::abs(loop.true_tool(target.slot) - home - target.counts));
+    }
+  }
+  EXPECT_EQ(loop.refusals(), 0u);
+  return farthest;
+}
+
+TEST(MotionEnd, AToolWithPlayIsWhereItShouldBeOnceItsAxisCameFromBelow) {
+  Robot robot = on_a_bench(neuro());
+  plant::Parameters plant = plant_of(robot);
+  for (Axis& axis : robot.axes) {
+    axis.mechanics.tool_play_counts = 20;
+    plant.axis[axis.slot].tool_play_counts = 20;
+  }
+  const auto from_below = [&](PathProgram program) { return arriving_from_below(robot, std::move(program)); };
+  EXPECT_LE(farthest_tool(robot, plant, from_below), 2.0);
+  EXPECT_GE(farthest_tool(robot, plant, [](PathProgram program) { return program; }), 18.0)
+      << "the play shows when nothing is done about it";
+}
+
+TEST(MotionEnd, OnlyALegThatMayComeFromAboveGoesBelowFirst) {
+  Robot robot = neuro();
+  Axis& yaw = *std::ranges::find(robot.axes, "yaw", &Axis::name);
+  const auto to = [&](std::int32_t counts, bool confirmed) {
+    return MoveLeg{{{yaw.slot, counts}}, 0.0, 0.0, confirmed};
+  };
+  const auto legs_of = [&](PathProgram program) {
+    std::vector<std::pair<std::int32_t, bool>> legs;
+    for (const PathLeg& leg : arriving_from_below(robot, std::move(program)).legs) {
+      const auto& move = std::get<MoveLeg>(leg);
+      legs.emplace_back(move.targets.front().counts, move.needs_confirmation);
+    }
+    return legs;
+  };
+  const PathProgram there{{to(-300, true), to(-200, false), to(-250, false)}};
+  using Legs = std::vector<std::pair<std::int32_t, bool>>;
+  EXPECT_EQ(legs_of(there), (Legs{{-300, true}, {-200, false}, {-250, false}})) << "nobody measured a play";
+  yaw.mechanics.tool_play_counts = 4;
+  EXPECT_EQ(legs_of(there), (Legs{{-307, true}, {-300, false}, {-200, false}, {-257, false}, {-250, false}}));
+  yaw.mechanics.tool_play_counts = 10000;
+  EXPECT_EQ(legs_of(there), (Legs{{-300, true}, {-200, false}, {-250, false}})) << "there is no room for it";
 }
 
 TEST(MotionEnd, TheEndsOfTheRangeAreReachedToo) {

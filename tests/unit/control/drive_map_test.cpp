@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include "control/frequency_map.hpp"
+
 namespace interlock {
 namespace {
 
@@ -140,6 +142,51 @@ TEST(DriveMap, RefusesWhatIsNoMapByName) {
               rules.counts_per_revolution = 0;
             }),
             "counts per revolution is out of range");
+}
+
+/** Speed of a motor whose map is that of the drive, moved by so many hertz. */
+double true_speed(const DriveMap& published, std::uint32_t drive, double above_hz) {
+  const double word = frequency_map::word_of(drive) - above_hz * frequency_map::words_per_hz;
+  return published.speed(frequency_map::drive_at(static_cast<std::uint32_t>(word)), 1);
+}
+
+/** Speed that is reached when one is wanted for five seconds, while the share of it is measured. */
+double reached(DriveMap& map, double wanted_counts_per_s, double above_hz, double share = 1.0) {
+  const DriveMap published = map_of(frequency_rules());
+  double speed = 0.0;
+  for (int tick = 0; tick < 5000; ++tick) {
+    const std::uint32_t drive = map.drive(wanted_counts_per_s);
+    speed = share * true_speed(published, drive, above_hz);
+    map.follow(drive, speed, 0.001);
+  }
+  return speed;
+}
+
+TEST(FrequencyDrive, FollowsTheResonanceOfItsMotor) {
+  for (const double above_hz : {-300.0, -100.0, 0.0, 100.0, 300.0}) {
+    DriveMap map = map_of(frequency_rules());
+    EXPECT_NEAR(reached(map, 1500.0, above_hz), 1500.0, 15.0) << above_hz;
+    EXPECT_NEAR(true_speed(map_of(frequency_rules()), map.drive(800.0), above_hz), 800.0, 40.0)
+        << "at another speed, too";
+  }
+}
+
+TEST(FrequencyDrive, TakesNoAxisThatIsHeldForAnotherResonance) {
+  DriveMap map = map_of(frequency_rules());
+  const std::uint32_t before = map.drive(1500.0);
+  reached(map, 1500.0, 0.0, 0.1);
+  EXPECT_EQ(map.drive(1500.0), before);
+  reached(map, 1500.0, 0.0, 0.0);
+  EXPECT_EQ(map.drive(1500.0), before);
+}
+
+TEST(FrequencyDrive, OtherCardsFollowNothing) {
+  DriveMap map = map_of(linear_rules());
+  const std::uint32_t before = map.drive(500.0);
+  for (int tick = 0; tick < 1000; ++tick) {
+    map.follow(before, 250.0, 0.001);
+  }
+  EXPECT_EQ(map.drive(500.0), before);
 }
 
 }  // namespace

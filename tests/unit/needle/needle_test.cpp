@@ -45,6 +45,24 @@ TEST(Needle, bends_where_its_bevel_points) {
   EXPECT_NEAR(needle.tip_mm().y(), 0.0, 1e-9);
 }
 
+TEST(Needle, turns_its_tip_once_its_hub_has_taken_up_play_and_winding) {
+  NeedleParameters parameters = exact(0.0041);
+  parameters.torsion_play_rad = 0.1;
+  parameters.windup_rad_per_mm = 0.008;
+  Needle needle(parameters, Noise(1, 0));
+  needle.move(50.0, 0.0);
+  const Eigen::Vector3d ahead = needle.ahead();
+  const auto bends_to_x_by = [&](double turned_rad) {
+    Needle turned = needle;
+    turned.move(0.0, turned_rad);
+    turned.move(10.0, 0.0);
+    return turned.ahead().x() - ahead.x();
+  };
+  EXPECT_NEAR(bends_to_x_by(0.49), 0.0, 1e-12) << "0.1 rad of play and 0.4 of winding at 50 mm";
+  EXPECT_GT(bends_to_x_by(1.5), 0.02) << "the tip turned by a radian";
+  EXPECT_NEAR(bends_to_x_by(-0.49), 0.0, 1e-12);
+}
+
 TEST(Needle, goes_straight_without_curvature_or_at_full_spin) {
   EXPECT_LT((after_mm(exact(0.0), 100.0, 3.0).tip_mm() - Eigen::Vector3d(0, 0, 100)).norm(), 1e-9);
   // A turn in 2.5 mm: the axis of the helix is tilted by 0.0041 * 2.5 / (2 pi).

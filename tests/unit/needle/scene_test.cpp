@@ -102,6 +102,28 @@ TEST(Scene, AnImageArrivesLateWithNoiseAndShowsAShiftedTarget) {
   EXPECT_NEAR(scene.truth().target_mm[0], 6.0, 1e-12);
 }
 
+TEST(Scene, ADraggedTargetAnArtefactAndABreathAreInTheImage) {
+  plant::SceneParameters moved = parameters();
+  moved.image_deviation_mm = 0.0;
+  moved.dragged_share = 0.1;
+  moved.image_tip_bias_mm = 2.0;
+  moved.image_breathing_mm = 3.0;
+  moved.image_breath_s = 1e6;
+  Scene scene(moved, 1);
+  insert(scene, 10.0, 30.0);
+  const plant::NeedleTruth truth = scene.truth();
+  EXPECT_NEAR(truth.target_mm[2], 32.0, 0.01) << "a tenth of 20 mm ahead";
+  const auto& image = scene.newest_image();
+  ASSERT_TRUE(image);
+  EXPECT_NEAR(image->tip_mm[0] - truth.tip_mm[0], 2.0, 1e-3);
+  moved.image_breath_s = 8.0;
+  Scene breathing(moved, 1);
+  insert(breathing, 10.0, 30.0);
+  ASSERT_TRUE(breathing.newest_image());
+  EXPECT_DOUBLE_EQ(breathing.newest_image()->time_s, image->time_s) << "at a quarter of a breath";
+  EXPECT_NEAR(breathing.newest_image()->target_mm[1] - image->target_mm[1], 3.0, 0.01);
+}
+
 TEST(Scene, TheSameSeedGivesTheSameAndAnotherOneNot) {
   plant::SceneParameters wandering = parameters();
   wandering.wander_rad = 0.001;

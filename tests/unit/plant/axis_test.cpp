@@ -124,6 +124,86 @@ TEST(PlantAxis, BacklashIsLostWhenTheDirectionChanges) {
   EXPECT_NEAR((without_peak - without.position(kNonPwm)) - (with_peak - with.position(kNonPwm)), 10, 1e-6);
 }
 
+TEST(PlantAxis, TheToolIsWhereTheEncoderIsAfterMotionUpAndThePlayBeyondItAfterMotionDown) {
+  Parameters parameters = exact_parameters();
+  parameters.axis[kNonPwm].tool_play_counts = 20;
+  Bench bench(parameters);
+  Bench without(exact_parameters());
+  const Axis& axis = *bench.plant.station(kNonPwm)->axis;
+  const auto drive = [&](Sense sense, std::uint32_t ticks) {
+    for (Bench* each : {&bench, &without}) {
+      each->drive(kNonPwm, sense, kMaxDrive);
+      each->run(ticks);
+    }
+    EXPECT_EQ(bench.counter(kNonPwm), without.counter(kNonPwm)) << "the encoder sees nothing of it";
+  };
+  drive(Sense::kIncreasing, 300);
+  EXPECT_EQ(axis.tool_counts(), axis.position_counts());
+  const double peak = axis.tool_counts();
+  drive(Sense::kDecreasing, 20);
+  EXPECT_LT(axis.position_counts(), peak - 5);
+  EXPECT_GE(axis.tool_counts(), peak) << "the play is taken up";
+  drive(Sense::kDecreasing, 100);
+  EXPECT_EQ(axis.tool_counts(), axis.position_counts() + 20);
+}
+
+/** Ways that the axis goes in the second after the first, to larger positions and to smaller ones. */
+std::pair<double, double> ways(const Parameters& parameters, std::size_t slot, std::uint32_t drive,
+                               std::uint32_t first_ticks) {
+  std::pair<double, double> way;
+  for (const Sense sense : {Sense::kIncreasing, Sense::kDecreasing}) {
+    Bench bench(parameters);
+    bench.drive(slot, sense, drive);
+    bench.run(first_ticks);
+    const double from = bench.position(slot);
+    bench.run(1000);
+    (sense == Sense::kIncreasing ? way.first : way.second) = std::abs(bench.position(slot) - from);
+  }
+  return way;
+}
+
+TEST(PlantAxis, ALoadSlowsTheWayUpAndHelpsTheWayDown) {
+  Parameters parameters = exact_parameters();
+  const auto without = ways(parameters, kNonPwm, kMaxDrive, 100);
+  parameters.axis[kNonPwm].load_fraction = 0.2;
+  const auto with = ways(parameters, kNonPwm, kMaxDrive, 100);
+  EXPECT_NEAR(with.first, 0.8 * without.first, 1e-6);
+  EXPECT_NEAR(with.second, 1.2 * without.second, 1e-6);
+}
+
+TEST(PlantAxis, AMotorLosesSpeedAsItWarmsAndHasItAgainOnceItIsCold) {
+  Parameters parameters = exact_parameters();
+  parameters.axis[kNonPwm].heat_droop_fraction = 0.3;
+  parameters.axis[kNonPwm].heat_time_s = 0.5;
+  Bench bench(parameters);
+  const auto speed = [&] { return bench.plant.station(kNonPwm)->axis->speed_counts_per_s(); };
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.run(50);
+  EXPECT_GT(speed(), 950.0) << "cold";
+  bench.run(5000);
+  EXPECT_NEAR(speed(), 700.0, 1.0) << "warm";
+  bench.stop(kNonPwm);
+  bench.run(5000);
+  bench.drive(kNonPwm, Sense::kIncreasing, kMaxDrive);
+  bench.run(50);
+  EXPECT_GT(speed(), 950.0) << "cold again";
+}
+
+TEST(PlantAxis, AResonanceThatFallsWithWarmthMakesTheSameFrequencySlower) {
+  Parameters parameters = exact_parameters();
+  constexpr std::uint32_t kWord = 1196612456u - 15 * 4063228u;
+  const auto published = ways(parameters, kHighFrequency, kWord, 100);
+  constexpr double kPointHz = 4063228.0 / 22009.0;
+  parameters.axis[kHighFrequency].resonance_hz = kPointHz;
+  const auto above = ways(parameters, kHighFrequency, kWord, 100);
+  EXPECT_NEAR(above.first / published.first, 58.997 / 45.548, 1e-3) << "a point further on the map";
+  parameters.axis[kHighFrequency].resonance_drift_hz = kPointHz;
+  parameters.axis[kHighFrequency].heat_time_s = 0.1;
+  const auto warm = ways(parameters, kHighFrequency, kWord, 2000);
+  EXPECT_NEAR(warm.first / published.first, 1.0, 1e-3);
+  EXPECT_NEAR(warm.second / published.second, 1.0, 1e-3);
+}
+
 /** A command that changes the one parameter of that name. */
 command::ChangeParameters change(std::size_t slot, std::string_view name, double value) {
   command::ChangeParameters wish{slot, {}};

@@ -114,8 +114,10 @@ TEST(PlantFile, FaultNamesFileLineKeyAndWhatWasExpected) {
   EXPECT_EQ(
       fault_of_plant(changed("name = \"b\"", "nane = \"b\"")),
       "p.toml:7: nane: unknown key; expected one of slot, name, start_counts, start_from_switch_counts, "
-      "dead_zone_fraction, full_speed_counts_per_s, counts_per_revolution, lag_ms, backlash_counts, "
-      "noise_counts, noise_chance, end_margin_counts, switch_hysteresis_counts, switch_bounce_ms");
+      "dead_zone_fraction, full_speed_counts_per_s, lag_ms, backlash_counts, tool_play_counts, "
+      "load_fraction, "
+      "heat_droop_fraction, heat_time_s, resonance_hz, resonance_drift_hz, noise_counts, noise_chance, "
+      "counts_per_revolution, end_margin_counts, switch_hysteresis_counts, switch_bounce_ms");
   EXPECT_EQ(fault_of_plant(changed("start_counts = 0\n", "")),
             "p.toml:5: start_counts: expected either start_counts or start_from_switch_counts");
   EXPECT_EQ(fault_of_plant(changed("start_counts = 0", "start_from_switch_counts = 5")),

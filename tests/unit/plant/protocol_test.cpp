@@ -54,8 +54,13 @@ TEST(PlantProtocol, ReadsEveryCommandOfTheReadme) {
   const auto parameters = command_of<command::ChangeParameters>(
       R"({"command":"parameters","slot":4,"lag_ms":12.5,"noise_counts":3})");
   EXPECT_EQ(parameters.slot, 4u);
-  EXPECT_EQ(parameters.value, (std::array<std::optional<double>, kAxisKnobCount>{
-                                  std::nullopt, std::nullopt, 12.5, std::nullopt, 3.0, std::nullopt}));
+  for (std::size_t knob = 0; knob < kAxisKnobCount; ++knob) {
+    const std::string_view name = kAxisKnobs[knob].name;
+    EXPECT_EQ(parameters.value[knob], name == "lag_ms"         ? std::optional(12.5)
+                                      : name == "noise_counts" ? std::optional(3.0)
+                                                               : std::nullopt)
+        << name;
+  }
   EXPECT_EQ(command_of<command::RestoreParameters>(R"({"command":"parameters_restore","slot":4})").slot, 4u);
   const auto force = command_of<command::PressSensor>(R"({"command":"force","slot":3,"adc":2,"counts":-40})");
   EXPECT_EQ(force.input, 1u);

@@ -81,6 +81,7 @@ const std::map<std::string, std::vector<std::string>> impossible{
     {"axis.mechanics.noise_counts", {"-1", "4294967295"}},
     {"axis.mechanics.max_delta_counts", {"0", "4294967295"}},
     {"axis.mechanics.full_speed_counts_per_s", {"0", "100000001"}},
+    {"axis.mechanics.tool_play_counts", {"-1", "10001"}},
     {"axis.mechanics.rest_ms", {"0", "2", "1001"}},
     {"axis.stall.driven_ms", {"0", "2", "501"}},
     {"axis.stall.effort_ms", {"0", "201"}},

@@ -75,6 +75,22 @@ TEST(RobotFile, what_calibration_leaves_is_not_stated_unless_the_file_does) {
   EXPECT_EQ(robot->calibration_mm, 0.25);
 }
 
+TEST(RobotFile, play_of_a_tool_is_not_known_unless_the_file_states_it_and_needs_room_to_be_taken_up) {
+  Axis yaw = *test::neuro().find("yaw");
+  EXPECT_EQ(yaw.mechanics.tool_play_counts, std::nullopt);
+  EXPECT_EQ(yaw.take_up_counts(-300), std::nullopt);
+  const auto robot = parse_robot(test::neuro_with("full_speed_counts_per_s = 1000,",
+                                                  "full_speed_counts_per_s = 1000, tool_play_counts = 4,"),
+                                 "neuro.toml");
+  ASSERT_TRUE(robot) << robot.error().message();
+  yaw = *robot->find("yaw");
+  EXPECT_EQ(yaw.mechanics.tool_play_counts, 4u);
+  EXPECT_EQ(yaw.take_up_counts(-300), -307)
+      << "and by a deadband of one at each end, and the edge of a count";
+  EXPECT_EQ(yaw.take_up_counts(yaw.lowest_setpoint_counts() + 6), std::nullopt);
+  EXPECT_EQ(yaw.take_up_counts(yaw.lowest_setpoint_counts() + 7), yaw.lowest_setpoint_counts());
+}
+
 TEST(RobotFile, milliseconds_become_periods_of_the_robot) {
   const auto robot = parse_robot(test::neuro_with("period_us = 1000", "period_us = 500"), "fast.toml");
   ASSERT_TRUE(robot) << robot.error().message();

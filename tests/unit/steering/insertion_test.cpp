@@ -1,4 +1,4 @@
-/** @file Whole insertions on a few seeds; verification/steering runs the study on all. */
+/** @file Whole insertions on a few seeds; verification/study runs the study on all. */
 #include <gmock/gmock.h>
 
 #include <cmath>

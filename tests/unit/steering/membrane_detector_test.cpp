@@ -78,7 +78,7 @@ TEST(MembraneDetector, takes_no_slow_decline_for_a_puncture) {
   EXPECT_THAT(detector.records(), ElementsAre(Eq(std::nullopt)));
 }
 
-TEST(MembraneDetector, listens_only_near_the_next_membrane) {
+TEST(MembraneDetector, looks_only_near_the_next_membrane) {
   for (const double depth_mm : {10.0, 14.5, 25.5, 60.0}) {
     MembraneDetector detector = expecting({20.0});
     EXPECT_TRUE(go_in(detector, 0.0, 70.0, torn_at(depth_mm, 3.0)).empty()) << depth_mm;
@@ -95,7 +95,7 @@ TEST(MembraneDetector, skips_a_membrane_that_does_not_tear_and_waits_for_the_nex
   EXPECT_THAT(detector.records(), ElementsAre(Eq(std::nullopt), Optional(DoubleNear(50.0, 0.05))));
 }
 
-TEST(MembraneDetector, is_deaf_for_the_refractory_time) {
+TEST(MembraneDetector, finds_nothing_for_the_refractory_time) {
   const auto twice = [](double depth_mm) {
     return std::max(torn_at(20.0, 2.0)(depth_mm), torn_at(21.0, 2.0)(depth_mm));
   };
@@ -116,7 +116,7 @@ TEST(MembraneDetector, takes_no_hand_that_lets_go_for_a_puncture) {
   }
 }
 
-TEST(MembraneDetector, does_not_listen_while_the_needle_stands) {
+TEST(MembraneDetector, does_not_look_while_the_needle_stands) {
   MembraneDetector detector = expecting({20.0});
   for (int tick = 0; tick < 1000; ++tick) {
     const double force_n = tick < 500 ? 3.0 : 0.0;
@@ -126,7 +126,32 @@ TEST(MembraneDetector, does_not_listen_while_the_needle_stands) {
   }
 }
 
-TEST(MembraneDetector, hears_nothing_in_even_noise) {
+TEST(MembraneDetector, says_that_tissue_is_too_rough_and_finds_nothing_in_it) {
+  for (const auto& [rough_n, finds] : {std::pair(0.05, true), std::pair(0.3, false)}) {
+    MembraneDetector detector = expecting({40.0});
+    const auto membrane = torn_at(41.0, 3.0);
+    // A wave of 1.2 mm, at 4 mm/s twice as long as the time between peak and drop.
+    const auto cues = go_in(detector, 0.0, 60.0, [&, amplitude_n = rough_n](double depth_mm) {
+      return 0.7 + membrane(depth_mm) + amplitude_n * std::sin(depth_mm * 2.0 * std::numbers::pi / 1.2);
+    });
+    EXPECT_EQ(cues.size(), finds ? 1u : 0u) << rough_n;
+    EXPECT_EQ(detector.step({0.7, 60.0, speed_mm_s})->rough, !finds) << rough_n;
+    detector.reset();
+    EXPECT_FALSE(detector.step({0.7, 0.0, speed_mm_s})->rough) << "nothing is known of the next way";
+  }
+}
+
+TEST(MembraneDetector, takes_no_membrane_for_rough_tissue) {
+  MembraneDetector detector = expecting({20.0, 45.0});
+  const auto first = torn_at(21.0, 2.5);
+  const auto second = torn_at(44.0, 2.5);
+  const auto cues = go_in(detector, 0.0, 60.0,
+                          [&](double depth_mm) { return 0.7 + std::max(first(depth_mm), second(depth_mm)); });
+  EXPECT_EQ(cues.size(), 2u);
+  EXPECT_FALSE(detector.step({1.0, 60.0, speed_mm_s})->rough);
+}
+
+TEST(MembraneDetector, finds_nothing_in_even_noise) {
   Generator generator(1);
   std::normal_distribution<double> noise(2.0, 0.15);
   MembraneDetector detector = expecting({20.0, 45.0, 70.0});

@@ -48,6 +48,9 @@ constexpr double fiducial_sd_mm = 0.3;
 AtPose at_pose(const Robot& given, const Pose& scanner_from_zframe, const AxisPositions& positions) {
   Robot robot = given;
   robot.calibration_mm = 0.2;
+  for (Axis& axis : robot.axes) {
+    axis.mechanics.tool_play_counts = 6 * axis.deadband_counts;
+  }
   ProbeOffsets probe = given.probe;
   probe.treatment_to_tip_mm = 12.0;
   AtPose at{robot, *RobotKinematics::create(robot, probe), scanner_from_zframe, positions, {}};
@@ -102,11 +105,11 @@ using Stray = std::function<double(Gauss& noise, const Axis& axis)>;
 
 double stray_with_the_stated_deviation(Gauss& noise, const Axis& axis) {
   return noise((axis.deadband_counts + 0.5) / std::sqrt(3.0)) +
-         noise(axis.mechanics.backlash_counts / std::sqrt(12.0));
+         noise((axis.deadband_counts + 0.5) / std::sqrt(3.0));
 }
 
 double stray_anywhere_within_deadband_and_play(Gauss& noise, const Axis& axis) {
-  return noise.within(axis.deadband_counts + 0.5) + noise.within(axis.mechanics.backlash_counts / 2.0);
+  return noise.within(axis.deadband_counts + 0.5) + std::abs(noise.within(axis.deadband_counts + 0.5));
 }
 
 /** The share of points that end in the ellipsoids of treatment point and tip: every joint strays, the robot
@@ -227,18 +230,35 @@ TEST(ErrorBudget, TheRegistrationsShareIsTheTargetErrorOfFitzpatrick) {
   EXPECT_NEAR((with.treatment.covariance_mm2 - without.treatment.covariance_mm2).trace(), tre2, 1e-9);
 }
 
+TEST(ErrorBudget, AnAxisWithoutRoomToComeFromBelowBringsItsWholePlay) {
+  AtPose at = poses().front();
+  at.accuracy = {};
+  at.robot.calibration_mm.reset();
+  for (Axis& axis : at.robot.axes) {
+    axis.deadband_counts = 1;
+    axis.mechanics.tool_play_counts = axis.name == "yaw" ? 20 : 0;
+  }
+  const double with_room = budget_of(at).contributions[2].treatment_mm;
+  Axis& yaw = at.robot.axes[test::place_of(at.robot, "yaw")];
+  const std::int32_t counts = *yaw.to_counts(at.positions[test::place_of(at.robot, "yaw")]);
+  yaw.soft_limits.min_counts += counts - 20 - yaw.lowest_setpoint_counts();
+  ASSERT_FALSE(yaw.take_up_counts(counts));
+  EXPECT_NEAR(budget_of(at).contributions[2].treatment_mm / with_room, 20.0 / 1.5, 0.1);
+}
+
 TEST(ErrorBudget, WhatNobodyStatesCountsAsNothingAndIsNamed) {
   AtPose at = poses().front();
   at.accuracy = {};
   at.robot.calibration_mm.reset();
+  at.robot.axes.front().mechanics.tool_play_counts.reset();
   std::vector<std::string> missing;
   for (const ErrorContribution& each : budget_of(at).contributions) {
     if (!each.not_stated.empty()) {
       missing.emplace_back(each.source);
-      EXPECT_EQ(each.treatment_mm, 0.0);
+      EXPECT_TRUE(each.treatment_mm == 0.0 || each.source == "play") << "the other axes state theirs";
     }
   }
-  EXPECT_THAT(missing, testing::ElementsAre("registration", "calibration", "image"));
+  EXPECT_THAT(missing, testing::ElementsAre("registration", "play", "calibration", "image"));
 }
 
 TEST(ErrorBudget, NearASingularPoseThereIsNone) {

@@ -2011,8 +2011,10 @@ export interface components {
             left_mm: number;
             /** @description The force sensor was pressed when the pedal was: nothing follows it before it is let go. */
             waits_for_hand: boolean;
-            /** @description A membrane is listened for. */
+            /** @description A membrane is looked for. */
             armed: boolean;
+            /** @description The force varies so much where no membrane is that none can be told from it: none is found. */
+            rough: boolean;
             /** @description The needle trembles, for it has punctured a membrane. */
             cue: boolean;
             wanted_rotation_rad: number;

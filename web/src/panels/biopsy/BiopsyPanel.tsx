@@ -169,6 +169,12 @@ function Now({ now }: { readonly now: BiopsyNow }) {
       <dd>
         {now.depth_mm.toFixed(1)} mm, {now.left_mm.toFixed(1)} mm left, {now.speed_mm_s.toFixed(1)} mm/s
       </dd>
+      {now.rough && (
+        <dd className="bad" role="alert">
+          The force varies so much here that membranes cannot be told from tissue: none will be cued. Count on
+          your hand and on images.
+        </dd>
+      )}
       {now.images_disagree && (
         <dd className="bad" role="alert">
           The newest images contradict where needle or target are believed to be: the insertion waits. Look at

@@ -146,18 +146,21 @@ json membranes(const MembraneWorld& world, Seeds seeds) {
   std::uint32_t punctures = 0;
   std::uint32_t hits = 0;
   std::uint32_t false_alarms = 0;
+  std::uint32_t rough = 0;
   for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
     const MembraneOutcome outcome = pass_membranes(world, seed);
     punctures += outcome.punctures;
     hits += outcome.hits;
     false_alarms += outcome.false_alarms;
+    rough += outcome.rough ? 1 : 0;
     latencies.insert(latencies.end(), outcome.latencies_s.begin(), outcome.latencies_s.end());
   }
   json result{{"insertions", seeds.count()},
               {"punctures", punctures},
               {"hits", hits},
               {"false_alarms", false_alarms},
-              {"false_alarms_per_insertion", false_alarms / seeds.count()}};
+              {"false_alarms_per_insertion", false_alarms / seeds.count()},
+              {"said_rough", rough}};
   if (punctures > 0) {
     result["hit_share"] = static_cast<double>(hits) / punctures;
   }
@@ -169,7 +172,7 @@ json membranes(const MembraneWorld& world, Seeds seeds) {
 
 json detection(Seeds seeds) {
   json result;
-  for (const std::uint32_t factor : {1u, 2u, 4u}) {
+  for (const std::uint32_t factor : {1u, 2u, 3u, 4u, 5u}) {
     MembraneWorld world;
     world.force_noise_counts *= factor;
     world.texture_n *= factor;

@@ -97,6 +97,7 @@ MembraneOutcome pass_membranes(const MembraneWorld& world, std::uint64_t seed,
   Score score;
   double cue_mm = 0.0;
   double time_s = 0.0;
+  bool rough = false;
   for (std::uint64_t tick = 1; needle.insertion_mm() < end_mm && time_s < longest_s; ++tick) {
     time_s = static_cast<double>(tick) * period_s;
     needle.advance(hand.speed_mm_s(end_mm + 1.0 - needle.insertion_mm()), 0.0, period_s);
@@ -104,11 +105,14 @@ MembraneOutcome pass_membranes(const MembraneWorld& world, std::uint64_t seed,
     const double force_n = needle_force.sense(tissue.press(needle.insertion_mm() + cue_mm, period_s));
     const MembraneState state = detector.step({force_n, depth_mm, speed.next(depth_mm)}).value();
     cue_mm = state.cue_offset_mm;
+    rough = rough || state.rough;
     if (state.found) {
       score.cue(time_s, tissue.punctures());
     }
   }
-  return score.outcome(tissue.punctures());
+  MembraneOutcome outcome = score.outcome(tissue.punctures());
+  outcome.rough = rough;
+  return outcome;
 }
 
 }  // namespace interlock::experiment

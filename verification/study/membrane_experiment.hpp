@@ -25,6 +25,7 @@ struct MembraneOutcome {
   std::uint32_t punctures = 0;
   std::uint32_t hits = 0;          /**< cue within `latest_cue_s` after its puncture */
   std::uint32_t false_alarms = 0;  /**< any other cue */
+  bool rough = false;              /**< the detector said of the tissue at some time */
   std::vector<double> latencies_s; /**< of the hits */
 };
 

@@ -1,0 +1,33 @@
+#include <map>
+#include <utility>
+
+#include "proposals/programs.hpp"
+
+namespace interlock {
+
+PathProgram arriving_from_below(const Robot& robot, PathProgram program) {
+  std::map<std::uint32_t, std::int32_t> known; /**< where earlier legs left the axes, by slot */
+  PathProgram whole;
+  for (PathLeg& leg : program.legs) {
+    if (auto* move = std::get_if<MoveLeg>(&leg)) {
+      MoveLeg below;
+      for (const AxisCounts& target : move->targets) {
+        const Axis& axis = *robot.at_slot(target.slot);
+        const std::int32_t from = axis.take_up_counts(target.counts).value_or(target.counts);
+        const auto left = known.find(target.slot);
+        if (from != target.counts && (left == known.end() || left->second > from)) {
+          below.targets.push_back({target.slot, from});
+        }
+        known[target.slot] = target.counts;
+      }
+      if (!below.targets.empty()) {
+        below.needs_confirmation = std::exchange(move->needs_confirmation, false);
+        whole.legs.emplace_back(std::move(below));
+      }
+    }
+    whole.legs.push_back(std::move(leg));
+  }
+  return whole;
+}
+
+}  // namespace interlock
