@@ -111,6 +111,23 @@ class PathCheck {
     });
   }
 
+  /** A straight line begins where the robot stands, or it is none. */
+  [[nodiscard]] Checked start(const ilk_config_t& config) const {
+    if (!program_.line) {
+      return {};
+    }
+    const MoveLeg first = first_move(robot_, program_.legs.front());
+    for (const AxisCounts& place : first.targets) {
+      const std::int64_t off = std::int64_t{start_[place.slot]} - place.counts;
+      if (std::abs(off) > rest_tolerance_counts(config.axis[place.slot])) {
+        return tl::make_unexpected(
+            Refusal{"MOVED", capital(title_of(robot_, place.slot)) + " was moved since the line was planned.",
+                    "axes where they stood then", "Propose the line again."});
+      }
+    }
+    return {};
+  }
+
   [[nodiscard]] Checked separation() const {
     return each_leg([&](const MoveLeg& move, const TimedTrajectory* trajectory, Positions positions) {
       arrive(positions, move);
@@ -222,7 +239,7 @@ tl::expected<PathPreview, Refusal> check_path(const Robot& robot, const ilk_conf
   PathCheck check(robot, view, program);
   check_system(config, view, checks);
   check_axes(robot, view, program.mask(), checks);
-  checks.make(CheckName::range, [&] { return check.ranges(); });
+  checks.make(CheckName::range, [&] { return check.ranges().and_then([&] { return check.start(config); }); });
   checks.make(CheckName::separation, [&] { return check.separation(); });
   checks.make(CheckName::rates, [&] { return check.rates(); });
   return checks.outcome().map([&] { return check.preview(); });
@@ -265,13 +282,23 @@ class PathKind final : public MotionKind {
     for (const std::uint32_t slot : slots(robot, work)) {
       axes.push_back(robot.at_slot(slot)->name);
     }
-    return {{"axes", std::move(axes)}};
+    json asked{{"axes", std::move(axes)}};
+    if (const auto& line = work.as<PathTask>().program->line) {
+      asked["line_mm"] = line->length_mm;
+    }
+    return asked;
   }
 
   void add_fields(const Proposal& proposal, json& fields) const override {
     json ends = json::array();
     for (const AxisCounts& end : proposal.ends) {
       ends.push_back({{"slot", end.slot}, {"target_counts", end.counts}});
+    }
+    if (const auto& line = proposal.work<PathTask>()->program->line) {
+      fields["line"] = {{"length_mm", line->length_mm},
+                        {"allowed_mm", line->allowed_mm},
+                        {"planned_mm", line->planned_mm},
+                        {"keep", line->keeps_direction ? "direction" : "entry"}};
     }
     fields["legs"] = proposal.work<PathTask>()->program->legs.size();
     fields["leg"] = proposal.leg;
