@@ -64,7 +64,8 @@ class Line {
         const Axis& axis = robot_.axes[place];
         const double low = axis.to_unit(axis.lowest_setpoint_counts());
         const double high = axis.to_unit(axis.highest_setpoint_counts());
-        const double slack = half_count / axis.counts_per_unit;
+        // As far beyond as an axis rests that was sent to its end.
+        const double slack = (axis.deadband_counts + half_count) / axis.counts_per_unit;
         if (!axis.role.empty() && !(positions[place] >= low - slack && positions[place] <= high + slack)) {
           const std::string unit(unit_name(axis.unit));
           return refused_at(way_mm, "RANGE",

@@ -111,23 +111,6 @@ class PathCheck {
     });
   }
 
-  /** A straight line begins where the robot stands, or it is none. */
-  [[nodiscard]] Checked start(const ilk_config_t& config) const {
-    if (!program_.line) {
-      return {};
-    }
-    const MoveLeg first = first_move(robot_, program_.legs.front());
-    for (const AxisCounts& place : first.targets) {
-      const std::int64_t off = std::int64_t{start_[place.slot]} - place.counts;
-      if (std::abs(off) > rest_tolerance_counts(config.axis[place.slot])) {
-        return tl::make_unexpected(
-            Refusal{"MOVED", capital(title_of(robot_, place.slot)) + " was moved since the line was planned.",
-                    "axes where they stood then", "Propose the line again."});
-      }
-    }
-    return {};
-  }
-
   [[nodiscard]] Checked separation() const {
     return each_leg([&](const MoveLeg& move, const TimedTrajectory* trajectory, Positions positions) {
       arrive(positions, move);
@@ -239,7 +222,7 @@ tl::expected<PathPreview, Refusal> check_path(const Robot& robot, const ilk_conf
   PathCheck check(robot, view, program);
   check_system(config, view, checks);
   check_axes(robot, view, program.mask(), checks);
-  checks.make(CheckName::range, [&] { return check.ranges().and_then([&] { return check.start(config); }); });
+  checks.make(CheckName::range, [&] { return check.ranges(); });
   checks.make(CheckName::separation, [&] { return check.separation(); });
   checks.make(CheckName::rates, [&] { return check.rates(); });
   return checks.outcome().map([&] { return check.preview(); });
