@@ -1511,7 +1511,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED, NOT_IMPLEMENTED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, CONTROL, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, SCANNING, GATE_SOURCE, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE, MOVED,
+             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, SCANNING, GATE_SOURCE, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE, MOVED, of lines NO_LINE, INSERTED, OFF_AXIS,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of cases NO_CASE, CASE, OTHER_ROBOT; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
@@ -1699,16 +1699,10 @@ export interface components {
              * @enum {string}
              */
             keep?: "entry" | "direction";
-            /**
-             * @description Of a line: largest planned deviation of the treatment point, and of the probe from what it keeps.
-             * @default 0.1
-             */
-            deviation_mm: number;
-            /**
-             * @description Of a line: largest speed of the treatment point.
-             * @default 5
-             */
-            speed_mm_s: number;
+            /** @description Of a line: largest planned deviation of the treatment point, and of the probe from what it keeps; 0.1 unless said otherwise. */
+            deviation_mm?: number;
+            /** @description Of a line: largest speed of the treatment point; 5 unless said otherwise. */
+            speed_mm_s?: number;
             /**
              * @description Desired unless said otherwise: refused (UNREACHABLE) where the axes miss it by more than the robot's file allows. Reachable: as far as the axes go, with the miss that you accept.
              * @enum {string}
