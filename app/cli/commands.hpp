@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "calibration/calibration.hpp"
 #include "cli/exit_code.hpp"
 #include "cli/installation.hpp"
 #include "cli/kinematics_lines.hpp"
@@ -105,6 +106,25 @@ struct KinematicsOptions {
  */
 Result<void> answer_kinematics(KinematicsTask task, const KinematicsOptions& options,
                                const Installation& installation, std::istream& input, std::ostream& output);
+
+/** `interlock calibrate`: kinematics from measured poses. docs/calibration.md describes table and answer. */
+struct CalibrateOptions {
+  std::string robot;           /**< name of a robot, or its file */
+  std::filesystem::path poses; /**< the table */
+  std::filesystem::path write; /**< where the robot's file with what was found goes; empty: nowhere */
+  std::vector<std::uint32_t> leave_out; /**< lines of the table that do not count */
+  CalibrationOptions fit;
+};
+
+/**
+ * Fits the numbers, writes the robot's file with them, and answers with one line of JSON.
+ *
+ * @return REFUSED for a table or a robot that cannot be calibrated, for `write` while a pose is an outlier, and for
+ * numbers with which the kernel would refuse the robot; USAGE for a line that the table does not have;
+ * PRECONDITION when a file cannot be read or written.
+ */
+Result<void> calibrate(const CalibrateOptions& options, const Installation& installation,
+                       std::ostream& output);
 
 // `interlock model check` and `interlock model compile`.
 

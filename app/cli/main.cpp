@@ -59,6 +59,7 @@ struct CommandLine {
   TrajectoryOptions trajectory;
   TuneOptions tune;
   IdentifyOptions identify;
+  CalibrateOptions calibrate;
   IgtlOptions igtl;
   std::filesystem::path model;
   bool model_json = false;
@@ -203,6 +204,26 @@ void add_identify(CLI::App& cli, IdentifyOptions& options) {
   add_simulated(*command, options, options.axis, options.seed, "speed over drive", "what was measured");
 }
 
+void add_calibrate(CLI::App& cli, CalibrateOptions& options) {
+  CLI::App* const command =
+      cli.add_subcommand("calibrate", "Fit a robot's kinematics to poses that were measured on it");
+  command->add_option("--robot", options.robot, "Name of a robot, or its file")->required();
+  command
+      ->add_option("--poses", options.poses,
+                   "Table: AXIS [UNIT],...,tool_x [mm],tool_y [mm],tool_z [mm] and a row a pose")
+      ->required();
+  command->add_flag("--in-zframe", options.fit.in_zframe,
+                    "The poses are in the robot's zFrame; default: in a frame that is fitted with them");
+  command->add_option("--sd-mm", options.fit.sd_mm, "Standard deviation of a measured point, each coordinate")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--sd-rad", options.fit.sd_rad, "Standard deviation of a measured direction")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--hold", options.fit.hold,
+                      "Numbers to leave as they are, such as kinematics.side_link_mm");
+  command->add_option("--leave-out", options.leave_out, "Lines of the table that do not count");
+  command->add_option("--write", options.write, "File for the robot's file with what was found");
+}
+
 void add_tune(CLI::App& cli, TuneOptions& options) {
   CLI::App* const command =
       cli.add_subcommand("tune", "Run a step of an axis on the simulated hardware and say how good it was");
@@ -278,6 +299,9 @@ Result<void> execute(const CLI::App& cli, const CommandLine& line) {
   if (cli.got_subcommand("identify")) {
     return identify(line.identify, Installation::current(), std::cout);
   }
+  if (cli.got_subcommand("calibrate")) {
+    return calibrate(line.calibrate, Installation::current(), std::cout);
+  }
   if (cli.got_subcommand("tune")) {
     return tune(line.tune, Installation::current(), std::cout);
   }
@@ -313,6 +337,7 @@ int main(int argc, char** argv) {
   add_trajectory(cli, line.trajectory);
   add_tune(cli, line.tune);
   add_identify(cli, line.identify);
+  add_calibrate(cli, line.calibrate);
   add_igtl(cli, line.igtl);
   add_model(cli, line);
   line.store.describe(cli);

@@ -1,10 +1,9 @@
-#include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string_view>
 
 #include "cli/commands.hpp"
 #include "cli/named_robot.hpp"
+#include "cli/write_file.hpp"
 #include "trajectory/trajectory_csv.hpp"
 
 namespace interlock::cli {
@@ -12,22 +11,6 @@ namespace interlock::cli {
 using nlohmann::json;
 
 namespace {
-
-/** The file's text; of one that is longer than a trajectory may be, enough to say so. */
-Result<std::string> text_of(const std::filesystem::path& file) {
-  std::ifstream input(file, std::ios::binary);
-  if (!input || std::filesystem::is_directory(file)) {
-    return failed(ExitCode::precondition,
-                  file.string() + ": cannot be read; choose a file with a trajectory");
-  }
-  std::string text;
-  std::array<char, 1 << 16> part{};
-  while (input && text.size() <= most_trajectory_bytes) {
-    input.read(part.data(), part.size());
-    text.append(part.data(), static_cast<std::size_t>(input.gcount()));
-  }
-  return text;
-}
 
 json to_json(const TimedTrajectory& trajectory) {
   json axes = json::object();
@@ -61,7 +44,7 @@ Result<void> check_trajectory(const TrajectoryOptions& options, const Installati
   if (!robot) {
     return tl::unexpected(robot.error());
   }
-  const Result<std::string> text = text_of(options.file);
+  const Result<std::string> text = text_of_file(options.file, "a trajectory");
   if (!text) {
     return tl::unexpected(text.error());
   }

@@ -1,5 +1,3 @@
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.hpp"
@@ -19,12 +17,6 @@ using Json = nlohmann::ordered_json;
 
 Failure simulation_refused(const std::string& why) { return {ExitCode::refused, why}; }
 
-bool is_same(const std::filesystem::path& one, const std::filesystem::path& other) {
-  std::error_code ignored;
-  return !one.empty() && !other.empty() &&
-         std::filesystem::weakly_canonical(one, ignored) == std::filesystem::weakly_canonical(other, ignored);
-}
-
 /** A file that is read is overwritten by no other: only `write` may be the robot's own. */
 Result<void> spares(const SimulatedAxis& options, const std::filesystem::path& csv,
                     const std::filesystem::path& robot, const std::filesystem::path& plant) {
@@ -33,14 +25,14 @@ Result<void> spares(const SimulatedAxis& options, const std::filesystem::path& c
                   file.string() + " would be overwritten by another file; choose another name");
   };
   for (const std::filesystem::path& drawn : {options.svg, csv}) {
-    if (is_same(drawn, robot) || is_same(drawn, plant) || is_same(drawn, options.write)) {
+    if (is_same_file(drawn, robot) || is_same_file(drawn, plant) || is_same_file(drawn, options.write)) {
       return refuse(drawn);
     }
   }
-  if (is_same(options.svg, csv)) {
+  if (is_same_file(options.svg, csv)) {
     return refuse(csv);
   }
-  return is_same(options.write, plant) ? refuse(plant) : Result<void>();
+  return is_same_file(options.write, plant) ? refuse(plant) : Result<void>();
 }
 
 /** A robot, as the kernel takes it, on its simulated hardware. */
@@ -88,20 +80,15 @@ Result<void> write_robot(const std::filesystem::path& to, const Simulated& on, c
   if (to.empty()) {
     return {};
   }
-  std::ifstream input(on.file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(input), {}};
   std::vector<AxisNumber> numbers;
   for (const NumberChange& change : changes) {
     numbers.push_back(change.number);
   }
-  return with_numbers(text, on.file.string(), axis, numbers)
-      .and_then([&](const std::string& edited) {
-        return parse_robot(edited, to.string())
-            .and_then([](const Robot& robot) { return compile(robot); })
-            .map([&](const ilk_config_t&) { return edited; });
+  return text_of_file(on.file, "a robot")
+      .and_then([&](const std::string& text) {
+        return with_numbers(text, on.file.string(), axis, numbers).map_error(robot_failure);
       })
-      .map_error(robot_failure)
-      .and_then([&](const std::string& edited) { return write_file(to, edited); });
+      .and_then([&](const std::string& edited) { return write_robot_file(to, edited); });
 }
 
 Json to_json(const std::vector<NumberChange>& changes) {

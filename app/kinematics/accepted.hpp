@@ -1,9 +1,10 @@
 /**
  * @file
- * What a family's reader gives for the parameters that it read.
+ * What a family gives for the parameters of its file: kinematics, and which of them can be calibrated.
  */
 #pragma once
 
+#include <initializer_list>
 #include <string>
 
 #include "kinematics/kinematics.hpp"
@@ -20,6 +21,15 @@ KinematicsPtr accepted(TableReader& table, const KinematicsResult<Family>& kinem
     return nullptr;
   }
   return std::make_shared<const Family>(*kinematics);
+}
+
+/** Lengths that measured poses can correct, each plausibly wrong by `plausible_mm`. */
+inline std::vector<CalibratedNumber> calibrated_lengths(std::initializer_list<const char*> keys) {
+  std::vector<CalibratedNumber> numbers;
+  for (const char* const key : keys) {
+    numbers.push_back({key, Unit::mm, plausible_mm});
+  }
+  return numbers;
 }
 
 }  // namespace interlock

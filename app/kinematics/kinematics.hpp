@@ -14,6 +14,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -55,6 +56,17 @@ struct SliderPair {
   double max_separation_mm;
 };
 
+/** A number of the family's file that measured poses can correct (calibration/calibration.hpp). */
+struct CalibratedNumber {
+  std::string key;  /**< dotted, from [kinematics] on: "home_rcm_mm[2]" */
+  Unit unit;        /**< of the number */
+  double plausible; /**< an error of this size surprises nobody, in that unit */
+};
+
+/** Errors that assembly leaves in a robot that nobody has calibrated. */
+inline constexpr double plausible_mm = 1.0;
+inline constexpr double plausible_rad = 0.01;
+
 /** Velocity of the treatment point per joint velocity, in the zFrame: rows 0 to 2 the point (mm/mm, mm/rad),
  * rows 3 to 5 the angular velocity (rad/mm, rad/rad); a column for each joint. */
 using Jacobian = Eigen::Matrix<double, 6, Eigen::Dynamic>;
@@ -94,6 +106,10 @@ class Kinematics {
 
   /** How far the treatment point is beyond the entry point; empty when the joints do not fix an entry. */
   [[nodiscard]] virtual std::optional<double> depth_mm(std::span<const double> positions) const = 0;
+
+  /** The numbers of its file that measured poses can correct. Of two that move the treatment point alike, the
+   * first is corrected and the other held. */
+  [[nodiscard]] virtual std::vector<CalibratedNumber> calibrated() const = 0;
 
   /** Pairs of sliders that could damage each other's linkage. */
   [[nodiscard]] virtual std::span<const SliderPair> slider_pairs() const noexcept = 0;

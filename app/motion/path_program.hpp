@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -32,9 +33,20 @@ struct TimedLeg {
 /** One part of a path. */
 using PathLeg = std::variant<MoveLeg, TimedLeg>;
 
+/** What a straight line of the treatment point keeps to. */
+struct LineFigures {
+  double length_mm = 0.0;
+  double allowed_mm = 0.0; /**< largest deviation that was asked for */
+  double planned_mm = 0.0; /**< bound of the planned one: of the treatment point from its line, and of the
+                              probe's axis from the entry point, or from the direction at the entry */
+  bool keeps_direction = false; /**< else the probe goes on passing through its entry point */
+};
+
 /** A whole path, leg by leg. */
 struct PathProgram {
   std::vector<PathLeg> legs;
+  /** Of a straight line: its one leg is right only from where the robot stood when it was made. */
+  std::optional<LineFigures> line = std::nullopt;
 
   /** Bit n: a leg moves the axis in slot n. */
   [[nodiscard]] std::uint32_t mask() const noexcept;

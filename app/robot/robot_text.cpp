@@ -64,7 +64,7 @@ tl::expected<std::string, RobotError> with_numbers(std::string_view text, std::s
     return tl::unexpected(RobotError{std::move(file), error.source().begin.line, "",
                                      std::string(error.description()), "a TOML file"});
   }
-  const toml::table* const table = axis_table(root, axis);
+  const toml::table* const table = axis.empty() ? &root : axis_table(root, axis);
   if (table == nullptr) {
     return tl::unexpected(RobotError{std::move(file), 0, "axis",
                                      "no axis is called \"" + std::string(axis) + '"',
@@ -73,10 +73,19 @@ tl::expected<std::string, RobotError> with_numbers(std::string_view text, std::s
   std::vector<Edit> edits;
   for (const AxisNumber& number : numbers) {
     const toml::node* const node = table->at_path(number.key).node();
+    const toml::node* const before = number.after.empty() ? nullptr : table->at_path(number.after).node();
+    if (node == nullptr && before != nullptr) {
+      const std::size_t end = std::min(text.find('\n', offset_of(text, before->source().end)), text.size());
+      edits.push_back(
+          {end, end,
+           '\n' + number.key.substr(number.key.rfind('.') + 1) + " = " + written(number.value, false)});
+      continue;
+    }
     if (node == nullptr || !node->is_number()) {
-      return tl::unexpected(RobotError{std::move(file), table->source().begin.line,
-                                       "axis." + std::string(axis) + '.' + number.key,
-                                       "no number stands there", "a number"});
+      return tl::unexpected(
+          RobotError{std::move(file), table->source().begin.line,
+                     axis.empty() ? number.key : "axis." + std::string(axis) + '.' + number.key,
+                     "no number stands there", "a number"});
     }
     edits.push_back({offset_of(text, node->source().begin), offset_of(text, node->source().end),
                      written(number.value, node->is_integer())});

@@ -14,15 +14,18 @@
 
 namespace interlock {
 
-/** A number of an axis. */
+/** A number of a robot's file. */
 struct AxisNumber {
-  std::string key; /**< dotted, from the axis on: "drive.dead_zone" */
+  std::string key; /**< dotted, from the axis on: "drive.dead_zone"; without an axis, from the file on:
+                      "kinematics.home_rcm_mm[2]" */
   double value = 0.0;
+  std::string after = {}; /**< key of the same table behind which a number that is not there yet is written on
+                             a line of its own; empty: it must be there */
 };
 
 /**
- * The text with these numbers of that axis. Where the text has a whole number, the new one is written without
- * a fraction.
+ * The text with these numbers of that axis, or of the whole file when `axis` is empty. Where the text has a
+ * whole number, the new one is written without a fraction.
  *
  * @param file names the text in the error, which is about a text that is no TOML, an axis that it does not
  * have, or a key that has no number there.

@@ -27,9 +27,6 @@ ProbeOffsets probe_of(const Targeting& targeting) {
           targeting.treatment_to_robot_at_home_mm};
 }
 
-namespace {
-
-/** A rotation that is ignored leaves nothing by which the error of the registration is known. */
 ImageAccuracy accuracy_of(const Targeting& targeting) {
   ImageAccuracy accuracy;
   if (targeting.residual_mm && !targeting.fiducial_points.empty() &&
@@ -44,6 +41,8 @@ ImageAccuracy accuracy_of(const Targeting& targeting) {
   }
   return accuracy;
 }
+
+namespace {
 
 Known<Alignment> alignment_of(const Robot& robot, const Targeting& targeting, const PoseSetup& setup) {
   if (!targeting.entry_point || !targeting.target_point) {

@@ -20,6 +20,10 @@ namespace interlock {
 template <typename Value>
 using Known = tl::expected<Value, nlohmann::json>;
 
+/** What is stated of the images. A rotation that is ignored leaves nothing by which the error of the
+ * registration is known. */
+ImageAccuracy accuracy_of(const Targeting& targeting);
+
 /** What poses are computed with. */
 struct PoseSetup {
   RobotKinematics kinematics;

@@ -1,6 +1,7 @@
-"""Degradation curves: how homing, tracking and targeting get worse with what the robot's file knows nothing of.
+"""Degradation curves: how homing, tracking and targeting get worse with what the robot's file does not know.
 
-Each point is one or more runs of `thesis_study` with a plant, a robot or a true robot that is changed in one number.
+Each point is one or more runs of `thesis_study` with a plant, a robot or a true robot that is changed in one
+number.
 """
 
 import concurrent.futures
@@ -63,7 +64,7 @@ def with_calibration(sd_mm: float) -> Callable[[str], str]:
 
 
 def strayed(sd_mm: float) -> Callable[[str, int], str]:
-    """The robot's file with each length of its kinematics off by a normal error, but for the sliders' window."""
+    """The robot's file with each length of its kinematics off by a normal error, but for its window."""
 
     def stray(text: str, seed: int) -> str:
         chance = random.Random(seed)
@@ -140,7 +141,8 @@ def targeting_points(robot: str) -> Iterator[Point]:
         )  # fmt: skip
     for sd_mm in (0.05, 0.1, 0.2, 0.5, 1.0):
         yield point(
-            "lengths of the kinematics off, deviation in mm; calibration_mm as it is at the point", sd_mm, seeds=24,
+            "lengths of the kinematics off, deviation in mm; calibration_mm as it is at the point", sd_mm,
+            seeds=24,
             robot_file=with_calibration(round(AT_POINT[robot] * sd_mm, 3)), true_robot=strayed(sd_mm),
         )  # fmt: skip
     for sd_mm in (0.1, 0.2, 0.5, 1.0):
@@ -154,8 +156,9 @@ def thesis_points() -> Iterator[Point]:
     """Believable errors together: what may explain the thesis' tables. The sizes are assumed."""
     for robot, play, lengths_mm, fiducials_mm in (("neuro", 5, 0.7, 0.5), ("prostate", 100, 0.3, 0.3)):
         yield Point(
-            "thesis", robot, f"play of {play} counts, lengths off by {lengths_mm} mm, fiducials by {fiducials_mm} mm",
-            1, plant={"tool_play_counts": play}, robot_file=with_calibration(AT_POINT[robot] * lengths_mm),
+            "thesis", robot,
+            f"play of {play} counts, lengths off by {lengths_mm} mm, fiducials by {fiducials_mm} mm", 1,
+            plant={"tool_play_counts": play}, robot_file=with_calibration(AT_POINT[robot] * lengths_mm),
             true_robot=strayed(lengths_mm), seeds=20,
             arguments=(*TABLE_ONCE, "--rounds", "1", "--fiducials", str(fiducials_mm)),
         )  # fmt: skip
@@ -236,7 +239,7 @@ def measure(study: Path, folder: Path) -> list[Row]:
 
 
 def worse(rows: list[Row], kept: list[Row]) -> list[str]:
-    """Points that are worse than those that are kept, by more than another machine's mathematics library makes."""
+    """Points that are worse than those that are kept, by more than another mathematics library makes."""
     by_name = {(row["curve"], row["robot"], row["disturbance"], row["size"]): row for row in rows}
     found = []
     for old in kept:

@@ -80,24 +80,21 @@ def table(rows: list[Row], curve: str, robot: str) -> str:
 def picture(rows: list[Row], curve: str, robot: str) -> str:
     """Each disturbance as a line: the figure over the size, in parts of the largest size that was tried."""
     figure = DRAWN[curve]
+    share = figure == "done"
     lines = list(by_disturbance(rows, curve, robot))
-    seen = [
-        row[figure] / (row["runs"] if figure == "done" else 1)
-        for _, points in lines
-        for row in points
-        if figure in row
-    ]
-    top = max(seen) * 1.05
+    of_all = [row for _, points in lines for row in points if figure in row]
+    top = 1.05 * max(row[figure] / (row["runs"] if share else 1) for row in of_all)
     width, height, left, below = 520, 260, 50, 30
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height + below + 16 * len(lines) + 10}" '
+        '<svg xmlns="http://www.w3.org/2000/svg" '
+        f'viewBox="0 0 {width} {height + below + 16 * len(lines) + 10}" '
         'font-family="sans-serif" font-size="11">',
         '<rect width="100%" height="100%" fill="#fff"/>',
         f'<path d="M{left} 10V{height}H{width - 10}" fill="none" stroke="#444"/>',
         f'<text x="{left - 6}" y="16" text-anchor="end">{top:.3g}</text>',
         f'<text x="{left - 6}" y="{height}" text-anchor="end">0</text>',
         f'<text x="{width - 10}" y="{height + 14}" text-anchor="end">largest size that was tried</text>',
-        f'<text x="{left}" y="{height + 14}">{escape({"done": "share of homings that are done"}.get(figure, figure))}</text>',
+        f'<text x="{left}" y="{height + 14}">{"share of homings that are done" if share else figure}</text>',
     ]
     for place, (name, points) in enumerate(lines):
         colour = COLOURS[place % len(COLOURS)]
@@ -105,7 +102,7 @@ def picture(rows: list[Row], curve: str, robot: str) -> str:
         drawn = [
             (
                 left + (width - left - 10) * row["size"] / largest,
-                height - (height - 10) * row[figure] / (row["runs"] if figure == "done" else 1) / top,
+                height - (height - 10) * row[figure] / (row["runs"] if share else 1) / top,
             )
             for row in points
             if figure in row

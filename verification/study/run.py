@@ -1,9 +1,10 @@
 """Runs the studies of steering, membrane detection and degradation, and writes build/evidence/steering.json.
 
-The parameters of steering were tuned on seeds 1 to 100; what is reported comes from seeds 101 to 300 (docs/steering.md).
-The same seeds give the same figures, but for the last digits of the machine's mathematics library, so the
-limits are asserted, and that no point of a curve (docs/degradation.md) is worse than the one that is kept: exits 1
-otherwise. With `--keep` the curves and the page's tables and pictures become those that were measured.
+The parameters of steering were tuned on seeds 1 to 100; what is reported comes from seeds 101 to 300
+(docs/steering.md). The same seeds give the same figures, but for the last digits of the machine's mathematics
+library, so the limits are asserted, and that no point of a curve (docs/degradation.md) is worse than the one
+that is kept: exits 1 otherwise. With `--keep` the curves, and the page's tables and pictures, become those
+that were measured.
 """
 
 import argparse

@@ -70,6 +70,11 @@ std::optional<double> NeuroKinematics::depth_mm(std::span<const double> position
          probe_.robot_to_entry_mm;
 }
 
+std::vector<CalibratedNumber> NeuroKinematics::calibrated() const {
+  return calibrated_lengths({"home_rcm_mm[0]", "home_rcm_mm[1]", "home_rcm_mm[2]", "driver_to_rcm_mm",
+                             "home_separation_mm", "side_link_mm", "top_width_mm"});
+}
+
 KinematicsResult<RobotBody> NeuroKinematics::zframe_body(std::span<const double> positions) const {
   const NeuroJoints joints = named(neuro_joint_fields, positions);
   return zframe_from_rcm(joints).map([&](const Pose& pose) {

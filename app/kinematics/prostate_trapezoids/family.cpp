@@ -69,6 +69,12 @@ KinematicsPtr read_prostate_trapezoids(TableReader& table) {
   return accepted(table, ProstateKinematics::create(prostate));
 }
 
+std::vector<CalibratedNumber> ProstateKinematics::calibrated() const {
+  return calibrated_lengths({"base_to_zframe_mm[0]", "base_to_zframe_mm[1]", "base_to_zframe_mm[2]",
+                             "needle_tip_mm", "needle_height_mm", "stage_distance_mm", "side_link_mm",
+                             "top_width_mm", "front_pivot_offset_mm", "upper_height_mm", "lower_height_mm"});
+}
+
 std::span<const Joint> ProstateKinematics::joints() const noexcept {
   static constexpr auto list = joints_of(prostate_joint_fields);
   return list;

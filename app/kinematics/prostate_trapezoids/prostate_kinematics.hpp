@@ -111,6 +111,7 @@ class ProstateKinematics final : public Kinematics {
       const Pose& zframe_from_treatment, const std::optional<Eigen::Vector3d>& entry) const override;
   [[nodiscard]] KinematicsResult<RobotBody> zframe_body(std::span<const double> positions) const override;
   [[nodiscard]] std::optional<double> depth_mm(std::span<const double> positions) const override;
+  [[nodiscard]] std::vector<CalibratedNumber> calibrated() const override;
   [[nodiscard]] std::span<const SliderPair> slider_pairs() const noexcept override { return pairs_; }
 
   /** Pose of the needle tip; its z axis is the way the needle advances. */

@@ -154,6 +154,24 @@ class SerialChain final : public Kinematics {
     return std::nullopt;
   }
 
+  /** The frames from the tool to the base. A direction is none of them: its frame turns it. */
+  [[nodiscard]] std::vector<CalibratedNumber> calibrated() const override {
+    std::vector<std::string> frames{"tool"};
+    for (std::size_t joint = model_->joints.size(); joint-- > 0;) {
+      frames.push_back("joint[" + std::to_string(joint) + ']');
+    }
+    std::vector<CalibratedNumber> numbers;
+    for (const std::string& frame : frames) {
+      for (const char* const place : {"[0]", "[1]", "[2]"}) {
+        numbers.push_back({frame + ".xyz_mm" + place, Unit::mm, plausible_mm});
+      }
+      for (const char* const place : {"[0]", "[1]", "[2]"}) {
+        numbers.push_back({frame + ".rpy_rad" + place, Unit::rad, plausible_rad});
+      }
+    }
+    return numbers;
+  }
+
   [[nodiscard]] std::span<const SliderPair> slider_pairs() const noexcept override { return {}; }
 
  private:

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "proposals/line_program.hpp"
 #include "proposals/programs.hpp"
 #include "service/alignment_view.hpp"
 #include "service/fields.hpp"
@@ -122,6 +123,134 @@ tl::expected<PoseRequest, Problem> pose_of(const json& body) {
   return request;
 }
 
+/** The straight line that a draft asks for. */
+struct LineDraft {
+  std::optional<double> along_mm;    /**< along the probe's axis, ahead when above 0 */
+  std::optional<Point> target_point; /**< of the treatment point, RAS */
+  bool keeps_direction = false;      /**< with `target_point` */
+  double deviation_mm = 0.0;
+  double speed_mm_s = 0.0;
+};
+
+tl::expected<LineDraft, Problem> line_of(const json& body) {
+  constexpr std::array<std::string_view, 2> kept{"entry", "direction"};
+  constexpr double usual_deviation_mm = 0.1;
+  constexpr double usual_speed_mm_s = 5.0;
+  Fields fields(body, {"kind", "along_mm", "target_point", "keep", "deviation_mm", "speed_mm_s"});
+  LineDraft line;
+  line.along_mm = fields.number("along_mm", -longest_line_mm, longest_line_mm);
+  if (const auto point = fields.numbers("target_point", 3)) {
+    line.target_point = Point{(*point)[0], (*point)[1], (*point)[2]};
+    fields.require({{"keep", "what the probe keeps: entry or direction"}});
+  }
+  line.keeps_direction = fields.choice("keep", kept) == "direction";
+  line.deviation_mm = fields.number("deviation_mm", 0.001, 100.0).value_or(usual_deviation_mm);
+  line.speed_mm_s = fields.number("speed_mm_s", 0.01, 1000.0).value_or(usual_speed_mm_s);
+  if (fields.problem()) {
+    return fail(*fields.problem());
+  }
+  if (line.along_mm.has_value() == line.target_point.has_value()) {
+    return fail(invalid("along_mm", "along_mm and target_point are both given, or neither is.",
+                        "along_mm, or target_point with keep"));
+  }
+  return line;
+}
+
+Problem problem_of(const json& found) {
+  return {.status = Status::conflict,
+          .code = found.at("code"),
+          .detail = found.at("text"),
+          .expected = "a robot whose place is known",
+          .next_step = "Look at GET /api/targeting/alignment."};
+}
+
+/** A straight line from where the robot stands, computed on any thread. */
+tl::expected<Task, Problem> line_task(const Robot& robot, const ilk_state_t& state,
+                                      const Targeting& targeting, const LineDraft& draft,
+                                      const std::string& author) {
+  // Only a point of the scanner needs to know where the robot is in it.
+  const auto setup =
+      draft.target_point
+          ? pose_setup(robot, targeting)
+          : picture_setup(robot, targeting).map([](const PictureSetup& picture) { return picture.poses; });
+  const auto from = setup.and_then([&](const PoseSetup&) { return known_positions(robot, state); });
+  if (!from) {
+    return fail(problem_of(from.error()));
+  }
+  const RobotKinematics& kinematics = setup->kinematics;
+  const Pose scanner_from_zframe = setup->registration.scanner_from_zframe();
+  const auto in_zframe = [&](const Point& point) -> Eigen::Vector3d {
+    return scanner_from_zframe.inverse() * Eigen::Vector3d(point.data());
+  };
+  LineRequest request{Eigen::Vector3d::Zero(), entry_at(kinematics, *from), draft.deviation_mm,
+                      draft.speed_mm_s};
+  if (draft.along_mm) {
+    if (const auto pose = kinematics.zframe_from_treatment(*from)) {
+      request.end_mm = *pose * Eigen::Vector3d(0.0, 0.0, *draft.along_mm);
+    }
+  } else {
+    request.end_mm = in_zframe(*draft.target_point);
+    if (draft.keeps_direction) {
+      request.entry_mm.reset();
+    } else if (!request.entry_mm && !targeting.entry_point) {
+      return fail(Problem{.status = Status::conflict,
+                          .code = "NO_TARGET",
+                          .detail = "The joints of " + robot.title + " fix no entry point, and none is set.",
+                          .expected = "an entry point through which the probe passes",
+                          .next_step = "Set entry and target, or keep the direction."});
+    } else if (!request.entry_mm) {
+      request.entry_mm = in_zframe(*targeting.entry_point);
+    }
+  }
+  auto program = line_program(robot, kinematics, *from, request);
+  if (!program) {
+    return fail(refused(program.error()));
+  }
+  Task task = task_of(RobotMode::coordinated, *program, author);
+  if (draft.target_point) {
+    const TimedTrajectory& trajectory = std::get<TimedLeg>(program->legs.front()).trajectory;
+    AxisPositions end = *from;
+    for (std::size_t axis = 0; axis < trajectory.axes().size(); ++axis) {
+      const auto place = robot.at_slot(trajectory.axes()[axis].slot) - robot.axes.data();
+      end[static_cast<std::size_t>(place)] = trajectory.end(axis).position;
+    }
+    const Pose reached = scanner_from_zframe * *kinematics.zframe_from_treatment(end);
+    task.aim = ReachedAim{reached, reached,
+                          error_budget_of(robot, kinematics, scanner_from_zframe, end,
+                                          {accuracy_of(targeting).registration, {}})};
+  }
+  return task;
+}
+
+DraftKind::Reading read_line(const Context& context, json body, std::string author) {
+  const auto draft = line_of(body);
+  if (!draft) {
+    co_return fail(draft.error());
+  }
+  if (const auto kernel = context.need_present_state(); !kernel) {
+    co_return fail(kernel.error());
+  }
+  const std::uint32_t revision = context.registry.targeting_revision();
+  const auto targeting = co_await present_targeting(context);
+  if (!targeting) {
+    co_return fail(targeting.error());
+  }
+  const ControlView& view = context.view();
+  auto places = standing(context.robot, view);
+  auto work = [robot = &context.robot, state = view.snapshot.state, targeting = *targeting, draft = *draft,
+               author = std::move(author)] { return line_task(*robot, state, targeting, draft, author); };
+  auto found = co_await context.work.run(std::move(work));
+  auto task = found.and_then([](tl::expected<Task, Problem>& made) { return std::move(made); });
+  if (!task) {
+    co_return fail(task.error());
+  }
+  if (draft->target_point) {
+    task->targeting_revision = revision;
+  }
+  task->rests_on = std::move(places);
+  co_return task;
+}
+
 DraftKind::Reading read_coordinated(const Context& context, json body, std::string author) {
   co_return coordinated_of(body, context.robot, author);
 }
@@ -203,10 +332,13 @@ DraftKind::Reading read_retraction(const Context& context, json body, std::strin
 
 std::span<const DraftKind> path_drafts();
 std::span<const DraftKind> path_drafts() {
-  static constexpr DraftKind drafts[] = {
-      {"coordinated", "", read_coordinated},         {"pose", "", read_pose},
-      {"trajectory", "trajectory", read_trajectory}, {"draping", "draping", read_draping},
-      {"retraction", "", read_retraction},           {"ablation", "", read_ablation}};
+  static constexpr DraftKind drafts[] = {{"coordinated", "", read_coordinated},
+                                         {"pose", "", read_pose},
+                                         {"trajectory", "trajectory", read_trajectory},
+                                         {"draping", "draping", read_draping},
+                                         {"retraction", "", read_retraction},
+                                         {"ablation", "", read_ablation},
+                                         {"line", "", read_line}};
   return drafts;
 }
 

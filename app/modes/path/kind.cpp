@@ -265,13 +265,23 @@ class PathKind final : public MotionKind {
     for (const std::uint32_t slot : slots(robot, work)) {
       axes.push_back(robot.at_slot(slot)->name);
     }
-    return {{"axes", std::move(axes)}};
+    json asked{{"axes", std::move(axes)}};
+    if (const auto& line = work.as<PathTask>().program->line) {
+      asked["line_mm"] = line->length_mm;
+    }
+    return asked;
   }
 
   void add_fields(const Proposal& proposal, json& fields) const override {
     json ends = json::array();
     for (const AxisCounts& end : proposal.ends) {
       ends.push_back({{"slot", end.slot}, {"target_counts", end.counts}});
+    }
+    if (const auto& line = proposal.work<PathTask>()->program->line) {
+      fields["line"] = {{"length_mm", line->length_mm},
+                        {"allowed_mm", line->allowed_mm},
+                        {"planned_mm", line->planned_mm},
+                        {"keep", line->keeps_direction ? "direction" : "entry"}};
     }
     fields["legs"] = proposal.work<PathTask>()->program->legs.size();
     fields["leg"] = proposal.leg;

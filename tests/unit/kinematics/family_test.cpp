@@ -70,6 +70,7 @@ TEST(Family, has_all_parts_through_the_interface) {
   EXPECT_LE((polar->zframe_from_treatment(*positions)->translation() - Eigen::Vector3d(30, 40, 20)).norm(),
             1e-9);
   EXPECT_EQ(polar->zframe_body(*positions)->back().name, "probe");
+  EXPECT_EQ(polar->calibrated().front().key, "height_mm");
   const std::vector<double> lowest{-1.0, 10.0};
   const std::vector<double> highest{1.0, 60.0};
   EXPECT_EQ(sample_workspace(*polar, lowest, highest, 100, 1)->zframe_mm.size(), 100U);

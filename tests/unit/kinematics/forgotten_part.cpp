@@ -24,6 +24,7 @@ class Forgetful final : public Kinematics {
   KinematicsResult<RobotBody> zframe_body(std::span<const double>) const override { return RobotBody(); }
 #endif
   std::optional<double> depth_mm(std::span<const double>) const override { return std::nullopt; }
+  std::vector<CalibratedNumber> calibrated() const override { return {}; }
   std::span<const SliderPair> slider_pairs() const noexcept override { return {}; }
 };
 

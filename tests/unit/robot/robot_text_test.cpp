@@ -44,6 +44,16 @@ TEST(RobotText, ANumberWithAFractionKeepsOne) {
   EXPECT_EQ(with_numbers(text, "r.toml", "head", numbers).value(), expected);
 }
 
+TEST(RobotText, ANumberOfTheWholeFileChangesAndAMissingOneIsWrittenBehindAnother) {
+  const AxisNumber numbers[] = {{"axis[1].drive.dead_zone", 11.0}, {"axis[0].slot", 3.0, "axis[0].name"}};
+  std::string expected = text;
+  expected.replace(expected.rfind("dead_zone = 9"), 13, "dead_zone = 11");
+  expected.insert(expected.find("\ndrive"), "\nslot = 3.0");
+  EXPECT_EQ(with_numbers(text, "r.toml", "", numbers).value(), expected);
+  const AxisNumber nowhere{"axis[0].slot", 3.0};
+  EXPECT_EQ(with_numbers(text, "r.toml", "", {&nowhere, 1}).error().key, "axis[0].slot");
+}
+
 TEST(RobotText, WhatIsNotThereIsNamed) {
   EXPECT_EQ(problem_of("tail", {"drive.max", 1.0}),
             "r.toml: axis: no axis is called \"tail\"; expected the name of an axis of this robot");

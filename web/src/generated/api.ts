@@ -1511,7 +1511,7 @@ export interface components {
              * @description Verdict name, or NOT_FOUND, METHOD_NOT_ALLOWED, MALFORMED, INVALID, TOO_LARGE, HOST, ORIGIN, UPGRADE_REQUIRED, NOT_IMPLEMENTED,
              *     LOGIN, CREDENTIALS, BACK_OFF, ROLE, CONTROL, REPLAY, EXISTS, LAST_ADMIN, STORE, STOPPED, MODE_HOME, MODE_PATH, NOT_HOMED, SEPARATION,
              *     HAS_SWITCH, POSITIONS_ROBOT, POSITIONS_CONFIG, POSITIONS_VERSION,
-             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, SCANNING, GATE_SOURCE, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE, MOVED,
+             *     NO_KERNEL, NO_BENCH, NO_BLACK_BOX, PEDAL_LAPSED, JOG_LAPSED, SCANNING, GATE_SOURCE, CONFIG_MISMATCH, ENDED, OVERLOADED, LATE; of paths NO_PATH, UNREACHABLE, STALE, MOVED, of lines NO_LINE, INSERTED, OFF_AXIS,
              *     EMPTY, NO_TARGETS, NOT_WAITING; of cases NO_CASE, CASE, OTHER_ROBOT; of a trajectory or a pose a code of `interlock trajectory check` or of `interlock kinematics`.
              */
             code: string;
@@ -1657,7 +1657,9 @@ export interface components {
          *     `step` (one home step of the robot); with neither it runs all steps in the order of the robot's file.
          *     `coordinated` takes `targets` and perhaps `duration_s`. `pose` aligns the probe with entry and target: it takes the probe out,
          *     moves all other axes together and, with `insert`, inserts the probe. `trajectory` follows the loaded one, `draping` goes
-         *     to the setpoints of the robot's file, `retraction` takes the probe out as far as it goes and needs neither case nor registration; they take nothing else. `ablation` turns and inserts the probe through `steps`, one
+         *     to the setpoints of the robot's file, `retraction` takes the probe out as far as it goes and needs neither case nor registration; they take nothing else. `line` moves the treatment point straight, from where it is: `along_mm` along the probe's axis, or to
+         *     `target_point` of the scanner with what the probe is to `keep`. It is planned to stay within `deviation_mm` of the line, at `speed_mm_s` at most, and refused with the place on the line where an axis or the kinematics ends
+         *     (RANGE, OUT_OF_REACH, SINGULAR, SEPARATION, NO_LINE), a probe that is inserted would be led across its axis (INSERTED), or the probe does not pass through its entry point (OFF_AXIS). `ablation` turns and inserts the probe through `steps`, one
          *     after the other, and rests at each. `sweep` turns the high-frequency `axis` at one frequency after the other, `from_hz` to
          *     `to_hz` in steps of `step_hz`, each for `dwell_s` of driven time, to and fro within its range; frequencies outside of the axis'
          *     allowed band are refused (DRIVE), and so is the published range. `biopsy` has the surgeon's hand push the needle towards
@@ -1670,7 +1672,7 @@ export interface components {
              * @default move
              * @enum {string}
              */
-            kind: "move" | "home" | "coordinated" | "pose" | "trajectory" | "draping" | "retraction" | "ablation" | "sweep" | "biopsy";
+            kind: "move" | "home" | "coordinated" | "pose" | "line" | "trajectory" | "draping" | "retraction" | "ablation" | "sweep" | "biopsy";
             /** @description Of a biopsy: target in the guide frame, see NeedleImage; without it the target point of the targeting. */
             target_mm?: number[];
             /** @description Of a sweep: name of a high-frequency axis. */
@@ -1688,6 +1690,19 @@ export interface components {
             };
             /** @description Least duration of the motion. */
             duration_s?: number;
+            /** @description Of a line: along the axis of the probe, ahead when above 0. */
+            along_mm?: number;
+            /** @description Of a line: where it ends, in the scanner (RAS), mm; needs a registration. */
+            target_point?: number[];
+            /**
+             * @description Of a line to a point: the probe goes on passing through its entry point (that of the robot, or else of the targeting), or keeps its direction.
+             * @enum {string}
+             */
+            keep?: "entry" | "direction";
+            /** @description Of a line: largest planned deviation of the treatment point, and of the probe from what it keeps; 0.1 unless said otherwise. */
+            deviation_mm?: number;
+            /** @description Of a line: largest speed of the treatment point; 5 unless said otherwise. */
+            speed_mm_s?: number;
             /**
              * @description Desired unless said otherwise: refused (UNREACHABLE) where the axes miss it by more than the robot's file allows. Reachable: as far as the axes go, with the miss that you accept.
              * @enum {string}
@@ -1739,6 +1754,14 @@ export interface components {
                 hz: number;
                 counts_per_s: number | null;
             }[];
+            /** @description Of a straight line: its length, the deviation that was allowed, and the bound of the planned one. */
+            line?: {
+                length_mm: number;
+                allowed_mm: number;
+                planned_mm: number;
+                /** @enum {string} */
+                keep: "entry" | "direction";
+            };
             /** @description Of a path: its parts, one after the other. */
             legs?: number;
             /** @description Of a path: the part that runs or is next, from 0. */

@@ -79,6 +79,12 @@ function Facts({ proposal, plan }: FactsProps) {
           <time dateTime={ended}>{localTime(ended)}</time>
         </Fact>
       )}
+      {proposal.line !== undefined && (
+        <Fact name="Straight line">
+          {proposal.line.length_mm.toFixed(2)} mm with the {proposal.line.keep} kept, planned to leave it by
+          at most {proposal.line.planned_mm.toFixed(3)} mm of {proposal.line.allowed_mm} mm
+        </Fact>
+      )}
       {proposal.aim !== null && (
         <Fact name="Misses the aim by">
           {proposal.aim.deviation.distance_mm.toFixed(2)} mm and {proposal.aim.deviation.angle_deg.toFixed(2)}

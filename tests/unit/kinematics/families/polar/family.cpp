@@ -74,6 +74,7 @@ class Polar final : public Kinematics {
   std::optional<double> depth_mm(std::span<const double> /*positions*/) const override {
     return std::nullopt;
   }
+  std::vector<CalibratedNumber> calibrated() const override { return calibrated_lengths({"height_mm"}); }
   std::span<const SliderPair> slider_pairs() const noexcept override { return {}; }
 
  private:
