@@ -3,12 +3,13 @@
 import csv
 import json
 import math
+import re
 import subprocess
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
-from bare_kernel import BIN, DEADLINE_S
+from bare_kernel import BIN, DEADLINE_S, ROOT
 from test_run import DONE, PRECONDITION, USAGE
 
 MECHANICAL_ERROR_MM = 0.1
@@ -68,16 +69,42 @@ def test_a_scan_that_shows_the_target_missed_leads_there_once_more() -> None:
     assert {trial["insertions"] for trial in once} == {1}
 
 
-@pytest.mark.parametrize("robot", ["neuro", "prostate"])
-def test_injected_mechanical_errors_are_distributed_as_the_thesis_errors(robot: str) -> None:
-    arguments = (TABLES, "--json", "--random-targets", "0", "--rounds", "30", "--mechanical-error")
-    answer = json.loads(study(robot, *arguments, "--tolerance", "100").stdout)
-    shown, printed = answer["distributions"]["first_scan"], answer["distributions"]["thesis"]
-    assert shown == answer["distributions"]["last_scan"]
-    assert (shown["insertions"], printed["insertions"]) == (210, 7)
-    assert shown["mean_mm"] == pytest.approx(printed["mean_mm"], rel=0.25)
-    without = json.loads(study(robot, TABLES, "--json", "--random-targets", "0").stdout)
-    assert without["injected_error"] == {"mean_mm": [0, 0, 0], "deviation_mm": [0, 0, 0]}
+@pytest.mark.parametrize(("robot", "play"), [("neuro", 5), ("prostate", 100)])
+def test_play_behind_the_encoder_is_an_error_unless_the_robots_file_states_it(
+    robot: str, play: int, tmp_path: Path
+) -> None:
+    plant, stated = tmp_path / "plant.toml", tmp_path / f"{robot}.toml"
+    text = (ROOT / f"models/plant/{robot}.toml").read_text()
+    plant.write_text(text.replace("[defaults]\n", f"[defaults]\ntool_play_counts = {play}\n"))
+    text = (ROOT / f"models/robots/{robot}.toml").read_text()
+    stated.write_text(re.sub(r"(mechanics = \{.*) \}", rf"\1, tool_play_counts = {play} }}", text))
+    arguments = (TABLES, "--json", "--random-targets", "0", "--tolerance", "100", "--plant", plant)
+    silent, known = (
+        json.loads(study(each, *arguments).stdout)["distributions"]["first_scan"] for each in (robot, stated)
+    )
+    assert known["worst_mm"] < 0.1
+    assert silent["mean_mm"] > 5 * known["mean_mm"]
+
+
+def test_a_wrong_registration_is_in_the_error_and_in_what_is_claimed_of_it() -> None:
+    arguments = (TABLES, "--json", "--random-targets", "0", "--tolerance", "100")
+    exact, off = (
+        json.loads(study("neuro", *arguments, "--rounds", "12", "--fiducials", sd_mm).stdout)["trials"]
+        for sd_mm in ("0", "0.3")
+    )
+    mean = [sum(math.hypot(*trial["first_error_mm"]) for trial in each) / len(each) for each in (exact, off)]
+    assert mean[0] < 0.1 < 0.5 < mean[1]
+    assert exact[0]["claimed_mm"] < 0.2 < 1.0 < off[0]["claimed_mm"]
+    assert sum(trial["within_claim"] for trial in off) > 0.7 * len(off)
+
+
+def test_kinematics_that_are_not_the_files_put_the_point_elsewhere(tmp_path: Path) -> None:
+    true = tmp_path / "true.toml"
+    text = (ROOT / "models/robots/neuro.toml").read_text()
+    true.write_text(text.replace("driver_to_rcm_mm = 72.5", "driver_to_rcm_mm = 73.5"))
+    arguments = (TABLES, "--json", "--random-targets", "0", "--tolerance", "100", "--true-robot", true)
+    first = json.loads(study("neuro", *arguments).stdout)["distributions"]["first_scan"]
+    assert first["mean_mm"] == pytest.approx(1.0, abs=0.1)
 
 
 def rows_of(table: Path) -> list[dict[str, float | None]]:
