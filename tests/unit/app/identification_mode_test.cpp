@@ -25,9 +25,9 @@ struct HiddenMotor {
   double backlash_counts;
 };
 
-constexpr HiddenMotor hidden_motor{0.02, 800, 8000, 3};
+constexpr HiddenMotor hidden_motor{0.06, 800, 8000, 3};
 
-const Axis& measured_axis() { return *neuro().find("yaw"); }
+const Axis& measured_axis() { return *neuro().find("probe_rotation"); }
 
 plant::Parameters plant_with_hidden(const HiddenMotor& motor) {
   plant::Parameters plant = plant::default_parameters(test::config_of(neuro()));

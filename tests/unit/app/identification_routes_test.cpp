@@ -114,6 +114,9 @@ TEST_F(IdentificationRoutesTest, ALinkedSliderIsMeasuredWhereItsLinkageLetsIt) {
   const std::int32_t all =
       measuring_range(config_.axis[feet.slot], feet.lowest_setpoint_counts(), feet.highest_setpoint_counts())
           .way_counts;
+  view_.snapshot.state.axis[feet.slot].position_counts = 0;
+  view_.snapshot.state.axis[head.slot].position_counts = 0;
+  show(view_);
   const json made =
       json::parse(post("/api/proposals", R"({"kind":"identify","axis":"feet","cleared":true})").body);
   ASSERT_EQ(made.value("state", ""), "checked") << made;

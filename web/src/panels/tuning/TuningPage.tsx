@@ -152,7 +152,7 @@ function FiguresPanel({ measured, motor, whole }: FiguresProps) {
           </tbody>
         </table>
       ) : (
-        <p className="panel-words">The figures follow once every drive was measured.</p>
+        <p className="tuning-words">The figures follow once every drive was measured.</p>
       )}
     </Panel>
   );
@@ -178,8 +178,9 @@ function SpeedFigure({ measured, motor }: Omit<FiguresProps, "whole">) {
         role="img"
         aria-label={`Speed of ${motor.title} by drive: ${words}`}
       >
-        {plot.speeds.map(({ y, words: speed }) => (
-          <g key={speed}>
+        {plot.speeds.map(({ y, words: speed }, index) => (
+          // biome-ignore lint/suspicious/noArrayIndexKey: always as many.
+          <g key={index}>
             <line className="tuning-grid" x1={LEFT} x2={WIDTH - 12} y1={y} y2={y} />
             <text className="tuning-number" x={LEFT - 6} y={y + 4} textAnchor="end">
               {speed}
@@ -237,7 +238,7 @@ function FilePanel({ id }: { readonly id: number }) {
 
 function FileChange({ change }: { readonly change: RobotFileChange }) {
   const { name, changes, text, diff, problem } = change;
-  if (changes.length === 0) return <p className="panel-words">The file fits the axis: no number differs.</p>;
+  if (changes.length === 0) return <p className="tuning-words">The file fits the axis: no number differs.</p>;
   return (
     <>
       <table className="table" aria-label="Numbers that should differ">
@@ -280,7 +281,7 @@ function FileChange({ change }: { readonly change: RobotFileChange }) {
               ))}
             </pre>
           </section>
-          <p className="panel-words">
+          <p className="tuning-words">
             The running robot goes on with its own file. Whoever answers for the robot reads the difference;
             the file is in force once it is in place and the robot is started with it.
           </p>

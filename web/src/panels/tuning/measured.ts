@@ -11,6 +11,8 @@ export const LEFT = 52;
 export const BOTTOM = 30;
 const TOP = 10;
 const RIGHT = 12;
+/** Counts a second that the drawing covers before anything was measured. */
+const LEAST_SPEED = 100;
 
 export interface Mark {
   readonly x: number;
@@ -31,7 +33,7 @@ export function speedPlot(measured: Measured, maxDrive: number): SpeedPlot {
   const { speeds, full_speed_counts_per_s: full, dead_zone_drive: deadZone } = measured;
   const fastest = niceAbove(
     Math.max(
-      1,
+      LEAST_SPEED,
       full,
       ...speeds.flatMap(({ up_counts_per_s, down_counts_per_s }) => [up_counts_per_s, down_counts_per_s]),
     ),
