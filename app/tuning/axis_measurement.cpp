@@ -71,6 +71,8 @@ void AxisMeasurement::begin(const ilk_axis_config_t& rules, const MeasuringRange
   step_ = 0;
   retries_ = 0;
   noise_known_ = false;
+  coast_counts_ = 0;
+  fastest_seen_whole_ = false;
   strong_ = {};
   row_ = {};
   delay_after_reversal_ = {};
@@ -187,11 +189,7 @@ void AxisMeasurement::on_rest(const MeasuredTick& reading) noexcept {
   const Move ended = move_;
   move_ = Move::none;
   if (ended == Move::strong || ended == Move::tried) {
-    if (whole_) {
-      found_.coast_counts = std::max(
-          found_.coast_counts.value_or(0),
-          static_cast<std::uint32_t>(std::max(0, direction_ * (reading.position_counts - last_driven_))));
-    }
+    note_coast(ended == Move::tried && drive_ == drive_of(1.0), reading);
     const Line measured = stood_ ? Line{} : line();
     if (ended == Move::tried) {
       take(measured);
@@ -205,6 +203,19 @@ void AxisMeasurement::on_rest(const MeasuredTick& reading) noexcept {
     state_ = State::stands;
   } else if (state_ == State::measures) {
     next(reading);
+  }
+}
+
+/** The fastest moves coast farthest: without one of them nobody knows how far. */
+void AxisMeasurement::note_coast(bool fastest, const MeasuredTick& reading) noexcept {
+  if (!whole_) {
+    return;
+  }
+  const std::int32_t coast = direction_ * (reading.position_counts - last_driven_);
+  coast_counts_ = std::max(coast_counts_, static_cast<std::uint32_t>(std::max(0, coast)));
+  fastest_seen_whole_ = fastest_seen_whole_ || fastest;
+  if (fastest_seen_whole_) {
+    found_.coast_counts = coast_counts_;
   }
 }
 

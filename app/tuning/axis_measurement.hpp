@@ -45,8 +45,8 @@ struct MeasuredAxis {
   double full_speed_counts_per_s = 0.0; /**< at the largest drive, in the faster direction */
   double fit_percent = 0.0; /**< standard deviation of the speeds from their line, of full speed */
   double lag_s = 0.0;       /**< time constant of the speed */
-  /** Farthest from the reading on which drive was last allowed until rest; nothing where no move had a
-   * reading in every tick from there on. */
+  /** Farthest from the reading on which drive was last allowed until rest; nothing where no move at the
+   * largest drive had a reading in every tick from there on. */
   std::optional<std::uint32_t> coast_counts = {};
   double backlash_counts = 0.0; /**< lost motion when the direction changes */
 };
@@ -161,6 +161,7 @@ class AxisMeasurement {
   void go_on(const MeasuredTick& reading) noexcept;
   void end_move(const MeasuredTick& reading) noexcept;
   void wait_for_rest(const MeasuredTick& reading) noexcept;
+  void note_coast(bool fastest, const MeasuredTick& reading) noexcept;
   void on_rest(const MeasuredTick& reading) noexcept;
   void next(const MeasuredTick& reading) noexcept;
   void start(Move move, int direction, std::int32_t way, const MeasuredTick& reading) noexcept;
@@ -200,6 +201,8 @@ class AxisMeasurement {
   bool stood_ = false;
   bool whole_ = false; /**< a reading in every tick since drive was to end */
   std::int32_t last_driven_ = 0;
+  std::uint32_t coast_counts_ = 0;  /**< of the moves that were seen whole */
+  bool fastest_seen_whole_ = false; /**< one at the largest drive among them */
   std::int32_t rest_at_ = 0;
   std::uint32_t rest_tick_ = 0;
   std::vector<Sample> samples_;

@@ -1823,7 +1823,7 @@ export interface components {
             fit_percent: number;
             /** @description Time constant of the speed. */
             lag_ms: number;
-            /** @description Farthest from the reading on which drive was last allowed until rest; null where each move missed a reading. */
+            /** @description Farthest from the reading on which drive was last allowed until rest; null where each move at the largest drive missed a reading. */
             coast_counts: number | null;
             /** @description Lost motion when the direction changes. */
             backlash_counts: number;
