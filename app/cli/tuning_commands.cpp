@@ -5,7 +5,6 @@
 #include "cli/write_file.hpp"
 #include "plant/parameters_file.hpp"
 #include "robot/compile.hpp"
-#include "robot/robot_text.hpp"
 #include "tuning/gain_search.hpp"
 #include "tuning/identification.hpp"
 #include "tuning/step_run.hpp"
@@ -80,23 +79,9 @@ Result<void> write_robot(const std::filesystem::path& to, const Simulated& on, c
   if (to.empty()) {
     return {};
   }
-  std::vector<AxisNumber> numbers;
-  for (const NumberChange& change : changes) {
-    numbers.push_back(change.number);
-  }
-  return text_of_file(on.file, "a robot")
-      .and_then([&](const std::string& text) {
-        return with_numbers(text, on.file.string(), axis, numbers).map_error(robot_failure);
-      })
-      .and_then([&](const std::string& edited) { return write_robot_file(to, edited); });
-}
-
-Json to_json(const std::vector<NumberChange>& changes) {
-  Json list = Json::array();
-  for (const NumberChange& change : changes) {
-    list.push_back({{"key", change.number.key}, {"was", change.was}, {"is", change.number.value}});
-  }
-  return list;
+  return changed_file(on.robot, to.string(), axis, changes)
+      .map_error(robot_failure)
+      .and_then([&](const std::string& edited) { return write_file(to, edited); });
 }
 
 Json optional_number(const std::optional<double>& value) { return value ? Json(*value) : Json(); }
@@ -112,25 +97,6 @@ Json to_json(const StepRun& run) {
           {"final_error_counts", figures.final_error_counts},
           {"overshoot_counts", figures.overshoot_counts},
           {"settle_ms", optional_number(figures.settle_ms)}};
-}
-
-Json to_json(const Identified& found) {
-  Json speeds = Json::array();
-  for (const DriveSpeed& at : found.speeds) {
-    speeds.push_back({{"drive", at.drive},
-                      {"up_counts_per_s", at.up_counts_per_s},
-                      {"down_counts_per_s", at.down_counts_per_s}});
-  }
-  return {{"homing_error", found.homing_error ? Json(*found.homing_error) : Json()},
-          {"dead_zone_drive", found.dead_zone_drive},
-          {"full_speed_counts_per_s", found.full_speed_counts_per_s},
-          {"fit_percent", found.fit_percent},
-          {"lag_ms", found.lag_s * 1000},
-          {"coast_counts", found.coast_counts},
-          {"backlash_counts", found.backlash_counts},
-          {"noise_counts", found.noise_counts},
-          {"hysteresis_counts", optional_number(found.hysteresis_counts)},
-          {"speeds", std::move(speeds)}};
 }
 
 /** One line: robot and axis first. */
@@ -193,7 +159,7 @@ Result<void> tune(const TuneOptions& options, const Installation& installation, 
           changes = gain_changes(found->gains, on.robot.find(axis)->gains);
           figures["worst_step_percent"] = {{"was", found->begun_with_percent},
                                            {"is", found->rms_velocity_error_percent}};
-          figures["changes"] = to_json(changes);
+          figures["changes"] = interlock::to_json(changes);
         }
         return write_robot(options.write, on, axis, changes).map([&] { answer(output, on, axis, figures); });
       });
@@ -211,8 +177,8 @@ Result<void> identify(const IdentifyOptions& options, const Installation& instal
           return write_file(options.svg, identified_svg(measured, title_of(on, options.axis)))
               .and_then([&] { return write_robot(options.write, on, options.axis, changes); })
               .map([&] {
-                Json found = to_json(measured);
-                found["changes"] = to_json(changes);
+                Json found = interlock::to_json(measured);
+                found["changes"] = interlock::to_json(changes);
                 answer(output, on, options.axis, found);
               });
         });

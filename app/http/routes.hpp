@@ -283,6 +283,7 @@ class ProposalRoutes {
   [[nodiscard]] boost::asio::awaitable<Reply> consent(const Call& call, const char* word, Consent give) const;
   [[nodiscard]] boost::asio::awaitable<Reply> reject(const Call& call) const;
   [[nodiscard]] Reply show(const Call& call) const;
+  [[nodiscard]] Reply robot_file(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> plan(const Call& call) const;
   [[nodiscard]] Reply abort(const Call& call) const;
 

@@ -143,6 +143,7 @@ struct ControlView {
   ilk_snapshot_t snapshot{};
   TaskTable tasks;
   SweepSpeeds sweep_speeds{};
+  MeasuredAxis measured; /**< by the newest identification */
   BiopsyFindings biopsy;
   BiopsyNow biopsy_now;
   ForceReadings force; /**< of a robot with a needle */

@@ -25,6 +25,7 @@
 #include "motion/path_program.hpp"
 #include "robot/modes.hpp"
 #include "targeting/error_budget.hpp"
+#include "tuning/axis_measurement.hpp"
 
 namespace interlock {
 
@@ -77,6 +78,12 @@ struct FrequencySteps {
 struct SweepTask {
   std::uint32_t slot = 0;
   FrequencySteps steps;
+};
+
+/** One axis, measured (tuning/axis_measurement.hpp). */
+struct IdentificationTask {
+  std::uint32_t slot = 0;
+  MeasuringRange range; /**< that its setpoints stay in */
 };
 
 /** The needle, pushed by the surgeon's hand and turned towards its target. */
@@ -228,6 +235,8 @@ enum class TaskReason : std::uint8_t {
   force_stale,       /**< the newest force is too old to act upon */
   steering_failed,   /**< `code` is the KinematicsError::Code */
   swept,             /**< every frequency was held for its time */
+  measured,          /**< the axis was measured at every drive at which it moves */
+  axis_stands,       /**< an axis that is measured does not move where it has to */
   moved_away,        /**< an axis was moved that has to stand still */
   linkage_strained,  /**< the linked slider came too near, or too far away */
   no_path            /**< no motion within the limits leads there from where the axes are */

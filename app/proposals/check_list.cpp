@@ -11,7 +11,7 @@ struct CheckText {
 };
 
 /** In the order of `CheckName`. */
-constexpr std::array<CheckText, 16> texts{{
+constexpr std::array<CheckText, 17> texts{{
     {"other_motion", "No homing and no motion of another mode is open."},
     {"targeting",
      "Registration, probe, target and where the axes stand are still those from which it followed."},
@@ -31,8 +31,9 @@ constexpr std::array<CheckText, 16> texts{{
     {"force", "The force sensor told something within the last 20 ms."},
     {"skin", "The tip is at the skin or in front of it."},
     {"depth", "The insertion reaches the depth of the target."},
+    {"instrument", "What goes into the patient is out as far as it goes."},
 }};
-static_assert(texts.size() == static_cast<std::size_t>(CheckName::depth) + 1);
+static_assert(texts.size() == static_cast<std::size_t>(CheckName::instrument) + 1);
 
 }  // namespace
 

@@ -42,7 +42,8 @@ enum class CheckName : std::uint8_t {
   band,
   force,
   skin,
-  depth
+  depth,
+  instrument
 };
 
 /** As the interface spells it: "other_motion". */

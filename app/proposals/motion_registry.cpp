@@ -233,13 +233,16 @@ void MotionRegistry::end_stale(const std::string& by) {
     const bool is_of_another_case = each.task->case_number != 0 && each.task->case_number != case_;
     if ((each.task->targeting_revision || is_of_another_case) && is_open(each.state)) {
       const bool waits = each.state == ProposalState::checked || send_(Cancel{each.id});
-      become(each, ProposalState::aborted,
-             std::string(is_of_another_case
-                             ? "Its case was suspended or closed; propose it again."
-                             : "Registration, probe or target changed, from which it followed; propose it "
-                               "again.") +
-                 (waits ? "" : " The control thread takes no commands now: press STOP."),
-             std::nullopt, by);
+      become(
+          each, ProposalState::aborted,
+          std::string(is_of_another_case ? "Its case was suspended or closed; propose it again."
+                      : each.work<IdentificationTask>() != nullptr
+                          ? "A case was opened, or its registration, probe or target changed: there may be "
+                            "a patient now."
+                          : "Registration, probe or target changed, from which it followed; propose it "
+                            "again.") +
+              (waits ? "" : " The control thread takes no commands now: press STOP."),
+          std::nullopt, by);
     }
   }
   publish_mode();

@@ -60,6 +60,7 @@ struct Proposal {
   double duration_s = 0.0;                /**< of the planned motion; of a path, once checked */
   std::uint32_t leg = 0;                  /**< index of the leg that runs or is next; of a path */
   std::vector<float> speeds_counts_per_s; /**< measured at each frequency that is over; of a sweep */
+  std::optional<MeasuredAxis> measured;   /**< so far; of an identification */
   ProposalState state = ProposalState::drafted;
   UtcTime created;
   std::uint32_t created_tick = 0;  /**< kernel tick */

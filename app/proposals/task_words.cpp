@@ -25,6 +25,7 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
     case TaskReason::breathing:
     case TaskReason::scanning:
     case TaskReason::swept:
+    case TaskReason::measured:
     case TaskReason::steering_failed:
       return "";
     case TaskReason::force_stale:
@@ -84,6 +85,9 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
              " and the slider that is linked to it came to a separation that their linkage does not allow, "
              "so "
              "motion ended. Look where both stand; then propose motion that brings them back.";
+    case TaskReason::axis_stands:
+      return stands_words(axis) +
+             ". Look for what holds it back, and at docs/tuning.md; then propose it again.";
     case TaskReason::no_path:
       return "No motion within the rates of the axes leads there from where they are; propose it again.";
   }

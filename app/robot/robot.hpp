@@ -254,6 +254,7 @@ struct Robot {
   std::string name;
   std::string title;
   std::string revision; /**< of the whole file, eight hex digits: another one for whatever is changed in it */
+  std::string text;     /**< the whole file, as it was read */
   std::uint32_t period_us = 1000;
   std::vector<std::string> modes; /**< ways of moving it; the first is the one in which it starts */
   bool auto_approve = false;      /**< no motion needs approval */

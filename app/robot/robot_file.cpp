@@ -231,6 +231,7 @@ tl::expected<Robot, RobotError> parse_robot(std::string_view text, std::string f
   }
   robot.origin = std::move(log.origin);
   robot.revision = revision_of(text);
+  robot.text = text;
   return robot;
 }
 

@@ -9,7 +9,9 @@ test("the first load is light, and asks nothing of any other computer", async ({
   const { files, compressedBytes, foreign } = await firstLoad(page, stack);
   const scripts = files.filter((file) => file.endsWith(".js"));
   expect(scripts.some((file) => file.startsWith("/assets/index-"))).toBe(true);
-  expect(scripts.filter((file) => /\/(View|Plots|Proposals|Targeting|Workflow)Page-/.test(file))).toEqual([]);
+  expect(
+    scripts.filter((file) => /\/(View|Plots|Proposals|Targeting|Tuning|Workflow)Page-/.test(file)),
+  ).toEqual([]);
   expect(files.filter((file) => file.endsWith(".wasm"))).toHaveLength(1);
   expect(foreign).toEqual([]);
   expect(compressedBytes).toBeLessThanOrEqual(LARGEST_FIRST_LOAD_BYTES);

@@ -120,6 +120,7 @@ export const knownBy = {
   Targeting: "Registration",
   Proposals: "All proposals",
   Plots: "Capture",
+  Tuning: "Measure an axis",
   "3D": "3D",
   Codes: "Codes",
   Users: "Users",

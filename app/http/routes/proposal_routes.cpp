@@ -8,6 +8,7 @@
 #include "service/fields.hpp"
 #include "service/reply.hpp"
 #include "service/targeting_store.hpp"
+#include "tuning/robot_changes.hpp"
 
 namespace interlock::web {
 namespace {
@@ -40,6 +41,8 @@ ProposalRoutes::ProposalRoutes(const Context& context, Router& router) : context
   router.add(verb::get, "/api/proposals/{id}", viewers,
              [this](const Call& call) -> Answering { co_return show(call); });
   router.add(verb::get, "/api/proposals/{id}/plan", viewers, [this](const Call& call) { return plan(call); });
+  router.add(verb::get, "/api/proposals/{id}/robot-file", viewers,
+             [this](const Call& call) -> Answering { co_return robot_file(call); });
   router.add(verb::post, "/api/proposals/{id}/approve", holder,
              [this](const Call& call) { return consent(call, "approved", &MotionRegistry::approve); });
   router.add(verb::post, "/api/proposals/{id}/confirm", holder,
@@ -134,6 +137,31 @@ Answering ProposalRoutes::plan(const Call& call) const {
   };
   co_return (co_await context_.work.run(std::move(work))).map([](json body) {
     return Success{.body = std::move(body)};
+  });
+}
+
+/** What a measured axis asks of the robot's file: schema `RobotFileChange`. */
+Reply ProposalRoutes::robot_file(const Call& call) const {
+  return show(call).and_then([&](const Success&) -> Reply {
+    const Proposal& proposal = *context_.registry.find(*number_in(call.parameters[0]));
+    if (!proposal.measured || proposal.state != ProposalState::done) {
+      return fail(
+          Problem{.status = Status::conflict,
+                  .code = "NOT_MEASURED",
+                  .detail = "Proposal " + std::to_string(proposal.id) + " has measured nothing whole.",
+                  .expected = "a proposal of kind identify that is done",
+                  .next_step = "Let it run to its end, or propose it again."});
+    }
+    const Robot& robot = context_.robot;
+    const std::string& axis = proposal.axis;
+    const auto changes = changes_of(robot, *robot.find(axis), Identified{*proposal.measured, axis});
+    const std::string name = robot.name + ".toml";
+    const auto text = changed_file(robot, name, axis, changes);
+    return Success{.body = {{"name", name},
+                            {"changes", to_json(changes)},
+                            {"text", text ? json(*text) : json()},
+                            {"diff", text ? unified_diff(robot.text, *text, name) : ""},
+                            {"problem", text ? json() : json(text.error().message())}}};
   });
 }
 

@@ -89,6 +89,7 @@ class ClosedLoop {
   [[nodiscard]] TaskStatus sweep() const { return status(typeid(SweepTask)); }
   [[nodiscard]] std::optional<Setpoint> setpoint(std::uint32_t slot) const { return modes_.setpoint(slot); }
   [[nodiscard]] const SweepSpeeds& sweep_speeds() const { return reported().sweep_speeds; }
+  [[nodiscard]] const MeasuredAxis& measured() const { return reported().measured; }
   [[nodiscard]] const BiopsyMode& biopsy() const {
     return dynamic_cast<const BiopsyMode&>(*modes_.find(typeid(BiopsyTask)));
   }

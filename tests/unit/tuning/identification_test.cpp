@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <random>
 #include <string>
 
 #include "plant/parameters_file.hpp"
@@ -174,6 +175,40 @@ TEST(Identification, AnAxisThatDoesNotHomeWithItsFileHomesWithTheOneThatComesOut
     ASSERT_TRUE(again) << name << ": " << again.error();
     EXPECT_FALSE(again->homing_error) << name << ": " << *again->homing_error;
   }
+}
+
+TEST(Identification, ReadingsThatAreMissingDoNotChangeWhatIsMeasured) {
+  const Robot robot = neuro();
+  const ilk_config_t config = compile(robot).value();
+  const Axis& axis = *robot.find("feet");
+  const Hidden hidden{0.08, 850, 8000, 3};
+  std::minstd_rand random(7);
+  StepRig rig(config, plant_with(robot, axis, hidden), 1, axis.slot);
+  ASSERT_TRUE(rig.make_ready());
+  AxisMeasurement program(config.common.period_us);
+  program.begin(config.axis[axis.slot], measuring_range(config.axis[axis.slot], axis.lowest_setpoint_counts(),
+                                                        axis.highest_setpoint_counts()));
+  MeasuringMove move;
+  std::uint32_t move_tick = 0;
+  std::uint32_t before = 0;
+  while (program.state() == AxisMeasurement::State::measures) {
+    move_tick = before <= 1 && rig.drive() > 1 ? rig.tick_count() : move_tick;
+    before = rig.drive();
+    if (random() % 4 == 0) {
+      move = program.see({rig.tick_count(), rig.axis().position_counts, rig.drive(), move_tick});
+    }
+    rig.move(move.target_counts, move.drive);
+    const auto ticked = rig.tick();
+    ASSERT_TRUE(ticked) << ticked.error();
+  }
+  ASSERT_EQ(program.state(), AxisMeasurement::State::done);
+  const MeasuredAxis& found = program.found();
+  EXPECT_NEAR(found.dead_zone_drive, hidden.dead_zone * axis.drive.max, 0.003 * axis.drive.max);
+  EXPECT_NEAR(found.full_speed_counts_per_s, hidden.full_speed_counts_per_s,
+              0.006 * hidden.full_speed_counts_per_s);
+  EXPECT_NEAR(found.lag_s, hidden.lag_us * 1e-6, 0.002);
+  EXPECT_NEAR(found.backlash_counts, hidden.backlash_counts, 0.75);
+  EXPECT_FALSE(found.coast_counts) << "no move was seen whole";
 }
 
 TEST(Identification, WhatCannotBeMeasuredIsSaid) {

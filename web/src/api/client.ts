@@ -9,6 +9,7 @@ export type Proposal = Schemas["Proposal"];
 export type JogStart = Schemas["JogStart"];
 export type JogDirection = JogStart["direction"];
 export type ProposalDraft = Schemas["ProposalDraft"];
+export type RobotFileChange = Schemas["RobotFileChange"];
 export type ProposalPlan = Schemas["ProposalPlan"];
 export type ProposalGhost = Schemas["ProposalGhost"];
 export type AxisProfile = Schemas["AxisProfile"];
@@ -210,6 +211,8 @@ export const api = {
   reject: (id: number) => act(() => http.POST("/api/proposals/{id}/reject", { params: { path: { id } } })),
   proposalPlan: (id: number) =>
     read(() => slowHttp.GET("/api/proposals/{id}/plan", { params: { path: { id } } })),
+  robotFile: (id: number) =>
+    read(() => http.GET("/api/proposals/{id}/robot-file", { params: { path: { id } } })),
   abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
   trajectory: () => read(() => http.GET("/api/trajectory")),
   loadTrajectory: (text: string, timing: "as_written" | "slowed_to_fit") =>

@@ -1323,6 +1323,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/proposals/{id}/robot-file": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        /**
+         * What a measured axis asks of the robot's file, as a proposal of kind `identify` found it. Nothing is changed by it: who answers for
+         *     the robot reads the difference and puts the file in place (docs/tuning.md). NOT_MEASURED unless the proposal is done.
+         */
+        get: operations["showRobotFileChange"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/proposals/{id}/reject": {
         parameters: {
             query?: never;
@@ -1665,18 +1687,23 @@ export interface components {
          *     allowed band are refused (DRIVE), and so is the published range. `biopsy` has the surgeon's hand push the needle towards
          *     `target_mm`, or without it towards the target point of the targeting (docs/biopsy.md): FORCE_STALE without a force of the last 20 ms,
          *     IN_TISSUE when the tip is past the skin; NO_REGISTRATION, NO_TARGET, NOT_HOMED or UNREACHABLE when the targeting's target cannot be had from where the
-         *     needle is. A biopsy that followed from the targeting ends when that changes.
+         *     needle is. A biopsy that followed from the targeting ends when that changes. `identify` moves the homed `axis` to and fro in the
+         *     middle of its range, some ninety times at drives from the largest down to where it stands, and measures what its mechanics do
+         *     (docs/tuning.md). It needs `cleared`: refused with CASE while a case is not closed, INSERTED or NOT_HOMED unless the probe is out as
+         *     far as it goes, RANGE where there is too little room, SEPARATION where its linkage forbids an end of it. It ends when a case is opened.
          */
         ProposalDraft: {
             /**
              * @default move
              * @enum {string}
              */
-            kind: "move" | "home" | "coordinated" | "pose" | "line" | "trajectory" | "draping" | "retraction" | "ablation" | "sweep" | "biopsy";
+            kind: "move" | "home" | "coordinated" | "pose" | "line" | "trajectory" | "draping" | "retraction" | "ablation" | "sweep" | "biopsy" | "identify";
             /** @description Of a biopsy: target in the guide frame, see NeedleImage; without it the target point of the targeting. */
             target_mm?: number[];
-            /** @description Of a sweep: name of a high-frequency axis. */
+            /** @description Of a sweep: name of a high-frequency axis. To identify: of any axis. */
             axis?: string;
+            /** @description To identify: true says that no patient is at the robot, needle and probe are taken off, and nobody's hands are near the axis. The audit keeps who said so. */
+            cleared?: boolean;
             /** @description Of a sweep, as all that follow to dwell_s: first frequency. */
             from_hz?: number;
             to_hz?: number;
@@ -1740,13 +1767,19 @@ export interface components {
                 error_budget_problem: components["schemas"]["TargetingProblem"] | null;
             } | null;
             /** @enum {string} */
-            kind: "move" | "home" | "path" | "sweep" | "biopsy";
+            kind: "move" | "home" | "path" | "sweep" | "biopsy" | "identify";
             /** @description Of a biopsy: in the guide frame. */
             target_mm?: number[];
             /** @description Of a biopsy at the target of the targeting: in the scanner (RAS), mm. */
             target_point?: number[];
-            /** @description Of a path, a sweep and a biopsy: as in /api/mode. */
+            /** @description Of a path, a sweep, a biopsy and an identification: as in /api/mode. */
             mode?: string;
+            /** @description Of an identification: no setpoint is below. */
+            lowest_counts?: number;
+            /** @description Of an identification: no setpoint is above. */
+            highest_counts?: number;
+            /** @description Of an identification: what it has measured, all of it once it is done; null before it begins. */
+            measured?: components["schemas"]["MeasuredAxis"] | null;
             /** @description Of a sweep: driven time at each frequency. */
             dwell_ticks?: number;
             /** @description Of a sweep: its frequencies, and the mean speed at each that is over; null before, and where the dwell was too short. */
@@ -1801,6 +1834,49 @@ export interface components {
             /** @description Why it is in this state, for people. */
             detail: string;
         };
+        /** @description What the mechanics of an axis do. Speeds come as they are measured; the other figures are 0 until it is done, but for noise and coast. */
+        MeasuredAxis: {
+            /** @description As `interlock identify` says it; null here, since a running robot has homed before. */
+            homing_error: string | null;
+            /** @description Largest drive that does not move the axis. */
+            dead_zone_drive: number;
+            /** @description At the largest drive, in the faster direction. */
+            full_speed_counts_per_s: number;
+            /** @description Standard deviation of the speeds from their line over drive, of full speed. */
+            fit_percent: number;
+            /** @description Time constant of the speed. */
+            lag_ms: number;
+            /** @description Farthest from the reading on which drive was last allowed until rest; null where each move at the largest drive missed a reading. */
+            coast_counts: number | null;
+            /** @description Lost motion when the direction changes. */
+            backlash_counts: number;
+            /** @description Peak to peak at rest, in five seconds. */
+            noise_counts: number;
+            /** @description Of the switch, as `interlock identify` measures it; null here, since a running robot is not homed by it. */
+            hysteresis_counts: number | null;
+            /** @description At each drive, in both directions, in the order in which they were measured. */
+            speeds: {
+                drive: number;
+                up_counts_per_s: number;
+                down_counts_per_s: number;
+            }[];
+        };
+        RobotFileChange: {
+            /** @description Of the robot's file. */
+            name: string;
+            /** @description Numbers of the axis that should differ; none where the file fits. */
+            changes: {
+                key: string;
+                was: number;
+                is: number;
+            }[];
+            /** @description The file that runs with these numbers in it, comments and all else as they are; null where the kernel would refuse it. */
+            text: string | null;
+            /** @description From the file that runs to the text, as `patch -p1` reads it; empty where nothing differs. */
+            diff: string;
+            /** @description The rule by which the kernel would refuse it. */
+            problem: string | null;
+        };
         ProposalPlan: {
             id: number;
             /** @description Kernel tick of the state that it was last checked against and planned from; null unless it was. */
@@ -1814,7 +1890,7 @@ export interface components {
         };
         ProposalCheck: {
             /** @enum {string} */
-            name: "other_motion" | "targeting" | "configuration" | "mode" | "axes" | "homed" | "drive" | "range" | "separation" | "rates" | "switches" | "home_order" | "band" | "force" | "skin" | "depth";
+            name: "other_motion" | "targeting" | "configuration" | "mode" | "axes" | "homed" | "drive" | "range" | "separation" | "rates" | "switches" | "home_order" | "band" | "force" | "skin" | "depth" | "instrument";
             /** @description What holds when it passes. */
             words: string;
             /**
@@ -5045,6 +5121,31 @@ export interface operations {
             401: components["responses"]["Login"];
             404: components["responses"]["NotFound"];
             503: components["responses"]["NoStore"];
+        };
+    };
+    showRobotFileChange: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["ProposalId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The change. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RobotFileChange"];
+                };
+            };
+            401: components["responses"]["Login"];
+            404: components["responses"]["NotFound"];
+            409: components["responses"]["Refused"];
         };
     };
     rejectProposal: {

@@ -6,6 +6,7 @@ describe("routeOf", () => {
     ["", "robot"],
     ["#/robot", "robot"],
     ["#/plots", "plots"],
+    ["#/tuning", "tuning"],
     ["#/view", "view"],
     ["#/workflow", "workflow"],
     ["#/workflow/7", "robot"],

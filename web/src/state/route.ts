@@ -8,6 +8,7 @@ export const routes = [
   "targeting",
   "proposals",
   "plots",
+  "tuning",
   "view",
   "codes",
   "users",

@@ -11,6 +11,7 @@ const pages: readonly { readonly route: Route; readonly title: string; readonly 
   { route: "targeting", title: "Targeting", adminOnly: false },
   { route: "proposals", title: "Proposals", adminOnly: false },
   { route: "plots", title: "Plots", adminOnly: false },
+  { route: "tuning", title: "Tuning", adminOnly: false },
   { route: "view", title: "3D", adminOnly: false },
   { route: "codes", title: "Codes", adminOnly: false },
   { route: "users", title: "Users", adminOnly: true },

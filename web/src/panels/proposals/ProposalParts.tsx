@@ -105,6 +105,12 @@ interface WishProps {
   readonly motor: Motor | undefined;
 }
 
+const motions: Partial<Record<Proposal["kind"], string>> = {
+  sweep: "Frequency sweep",
+  biopsy: "Cooperative biopsy",
+  identify: "Measurement",
+};
+
 export function Wish({ proposal, motor }: WishProps) {
   const name = motor?.title ?? proposal.axis;
   if (proposal.kind === "home") {
@@ -122,11 +128,11 @@ export function Wish({ proposal, motor }: WishProps) {
       </>
     );
   }
-  if (proposal.kind === "sweep" || proposal.kind === "biopsy") {
+  const motion = proposal.kind === "move" ? undefined : motions[proposal.kind];
+  if (motion !== undefined) {
     return (
       <>
-        <strong>{proposal.kind === "sweep" ? "Frequency sweep" : "Cooperative biopsy"}</strong>:{" "}
-        {proposal.axes.join(", ")}
+        <strong>{motion}</strong>: {proposal.axes.join(", ")}
       </>
     );
   }

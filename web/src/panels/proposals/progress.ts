@@ -25,6 +25,7 @@ export function progressOf(proposal: Proposal, seen: Seen): Progress | null {
   if (proposal.state === "done") return { share: 1, words: "all of it" };
   if (proposal.kind === "path") return pathProgress(proposal);
   if (proposal.kind === "sweep") return sweepProgress(proposal);
+  if (proposal.kind === "identify") return identifyProgress(proposal);
   if (proposal.kind === "home") return homeProgress(proposal, seen.robot);
   return proposal.kind === "move" ? moveProgress(proposal, seen) : null;
 }
@@ -37,6 +38,14 @@ function sweepProgress({ frequencies = [] }: Proposal): Progress {
   const over = frequencies.filter(({ counts_per_s }) => counts_per_s !== null).length;
   const all = frequencies.length;
   return { share: over / Math.max(1, all), words: `${over} of ${all} frequencies measured` };
+}
+
+/** At most so many drives are tried; the slowest motors stand at the last ones. */
+const MOST_DRIVES = 20;
+
+function identifyProgress({ measured }: Proposal): Progress {
+  const over = measured?.speeds.length ?? 0;
+  return { share: over / MOST_DRIVES, words: `${over} of at most ${MOST_DRIVES} drives measured` };
 }
 
 function homeProgress(proposal: Proposal, robot: Robot | null): Progress | null {

@@ -1,16 +1,21 @@
+#include "tuning/robot_changes.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-#include "tuning/identification.hpp"
+#include "robot/compile.hpp"
+#include "robot/robot_file.hpp"
 
 namespace interlock {
 namespace {
 
 constexpr double coast_margin = 1.25;
-/** What differs by less is the same: of full speed, and of the largest drive. */
+/** What differs by less is the same: of full speed, of the largest drive, and of play, in counts. */
 constexpr double same_speed = 0.005;
 constexpr double same_drive = 0.002;
+constexpr double same_play = 0.75;
 /** The kernel believes that homing is never slower: loaded and cold it is. */
 constexpr double slowest_share = 0.85;
 constexpr double longest_stall_s = 0.5;
@@ -33,8 +38,11 @@ void take_mechanics(Axis& axis, const Identified& found, double period_s) {
     mechanics.full_speed_counts_per_s = whole(found.full_speed_counts_per_s);
   }
   raise(mechanics.noise_counts, found.noise_counts);
-  raise(mechanics.backlash_counts, std::round(found.backlash_counts));
-  raise(mechanics.coast_counts, std::ceil(coast_margin * found.coast_counts) + mechanics.noise_counts);
+  if (found.backlash_counts > mechanics.backlash_counts + same_play) {
+    mechanics.backlash_counts = whole(std::round(found.backlash_counts));
+  }
+  raise(mechanics.coast_counts,
+        std::ceil(coast_margin * found.coast_counts.value_or(0)) + mechanics.noise_counts);
   raise(mechanics.max_delta_counts,
         mechanics.full_speed_counts_per_s * period_s + mechanics.noise_counts + 1);
 }
@@ -164,6 +172,16 @@ constexpr std::array homing_keys{
     std::pair{"homing.hysteresis_counts", &Homing::hysteresis_counts},
 };
 
+std::vector<std::string_view> lines_of(std::string_view text) {
+  std::vector<std::string_view> lines;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    lines.push_back(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return lines;
+}
+
 }  // namespace
 
 Axis with_dead_zone(Axis axis, double dead_zone_drive) {
@@ -212,6 +230,90 @@ std::vector<NumberChange> changes_of(const Robot& robot, const Axis& axis, const
         is.homing->timeout_ticks * period_s * 1000);
   }
   return changes;
+}
+
+nlohmann::ordered_json to_json(const std::vector<NumberChange>& changes) {
+  auto list = nlohmann::ordered_json::array();
+  for (const NumberChange& change : changes) {
+    list.push_back({{"key", change.number.key}, {"was", change.was}, {"is", change.number.value}});
+  }
+  return list;
+}
+
+nlohmann::ordered_json to_json(const Identified& found) {
+  using Json = nlohmann::ordered_json;
+  const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
+  Json speeds = Json::array();
+  for (const DriveSpeed& at : found.speeds) {
+    speeds.push_back({{"drive", at.drive},
+                      {"up_counts_per_s", at.up_counts_per_s},
+                      {"down_counts_per_s", at.down_counts_per_s}});
+  }
+  return {{"homing_error", or_null(found.homing_error)},
+          {"dead_zone_drive", found.dead_zone_drive},
+          {"full_speed_counts_per_s", found.full_speed_counts_per_s},
+          {"fit_percent", found.fit_percent},
+          {"lag_ms", found.lag_s * 1000},
+          {"coast_counts", or_null(found.coast_counts)},
+          {"backlash_counts", found.backlash_counts},
+          {"noise_counts", found.noise_counts},
+          {"hysteresis_counts", or_null(found.hysteresis_counts)},
+          {"speeds", std::move(speeds)}};
+}
+
+tl::expected<std::string, RobotError> changed_file(const Robot& robot, const std::string& name,
+                                                   const std::string& axis,
+                                                   std::span<const NumberChange> changes) {
+  std::vector<AxisNumber> numbers;
+  for (const NumberChange& change : changes) {
+    numbers.push_back(change.number);
+  }
+  return with_numbers(robot.text, robot.origin.file, axis, numbers).and_then([&](const std::string& edited) {
+    return parse_robot(edited, name)
+        .and_then([](const Robot& changed) { return compile(changed); })
+        .map([&](const ilk_config_t&) { return edited; });
+  });
+}
+
+std::string unified_diff(std::string_view was, std::string_view now, const std::string& name) {
+  constexpr std::size_t around = 3;
+  const std::vector<std::string_view> old_lines = lines_of(was);
+  const std::vector<std::string_view> new_lines = lines_of(now);
+  const std::size_t count = std::min(old_lines.size(), new_lines.size());
+  std::vector<std::size_t> different;
+  for (std::size_t line = 0; line < count; ++line) {
+    if (old_lines[line] != new_lines[line]) {
+      different.push_back(line);
+    }
+  }
+  std::string diff = different.empty() ? "" : "--- a/" + name + "\n+++ b/" + name + "\n";
+  for (std::size_t i = 0; i < different.size();) {
+    const std::size_t first = different[i] - std::min(around, different[i]);
+    std::size_t end = different[i] + 1;
+    for (; i < different.size() && different[i] <= end + 2 * around; ++i) {
+      end = different[i] + 1;
+    }
+    end = std::min(end + around, count);
+    const std::string place = std::to_string(first + 1) + "," + std::to_string(end - first);
+    diff += "@@ -" + place + " +" + place + " @@\n";
+    for (std::size_t line = first; line < end;) {
+      std::size_t same = line;
+      while (same < end && old_lines[same] != new_lines[same]) {
+        ++same;
+      }
+      for (std::size_t each = line; each < same; ++each) {
+        diff += "-" + std::string(old_lines[each]) + "\n";
+      }
+      for (std::size_t each = line; each < same; ++each) {
+        diff += "+" + std::string(new_lines[each]) + "\n";
+      }
+      if (same < end) {
+        diff += " " + std::string(old_lines[same]) + "\n";
+      }
+      line = same + 1;
+    }
+  }
+  return diff;
 }
 
 }  // namespace interlock
