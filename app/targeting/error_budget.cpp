@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 
 #include "kinematics/domain.hpp"
@@ -55,6 +56,12 @@ Matrix3d cross_with(const Vector3d& lever) {
       .finished();
 }
 
+/** By how much more a covariance has to count that was estimated from the residual of so many fiducials. */
+double widening(double fiducials) {
+  const boost::math::fisher_f estimated(3.0, 3.0 * fiducials - 6.0);
+  return 3.0 * boost::math::quantile(estimated, 0.95) / chi_square_95;
+}
+
 /** What a registration does to any point of the scanner. */
 struct RegistrationError {
   Vector3d centroid_mm = Vector3d::Zero();
@@ -84,7 +91,7 @@ KinematicsResult<RegistrationError> registration_error(const RegistrationFit& fi
     return check_range("fiducial_spread_mm", std::sqrt(std::max(0.0, from_axis_mm2.minCoeff())),
                        least_spread_mm, length_limit_mm, Code::singular)
         .map([&] {
-          error.shift_mm2 = squared(fit.residual_mm) / (3.0 * (count - 2.0));
+          error.shift_mm2 = widening(count) * squared(fit.residual_mm) / (3.0 * (count - 2.0));
           error.turn_rad2 = principal.eigenvectors() *
                             (error.shift_mm2 * from_axis_mm2.cwiseInverse()).asDiagonal() *
                             principal.eigenvectors().transpose();

@@ -4,7 +4,6 @@ import json
 import re
 from collections.abc import Iterator
 from html import escape
-from itertools import groupby
 from pathlib import Path
 
 from curves import ROOT, Row
@@ -34,9 +33,9 @@ def by_disturbance(rows: list[Row], curve: str, robot: str) -> Iterator[tuple[st
     """Each disturbance of a curve with its points, the undisturbed one first."""
     chosen = [row for row in rows if (row["curve"], row["robot"]) == (curve, robot)]
     undisturbed = [{**row, "size": 0} for row in chosen if row["disturbance"] == "none"]
-    for name, points in groupby(
-        (row for row in chosen if row["disturbance"] != "none"), lambda row: row["disturbance"]
-    ):
+    names = dict.fromkeys(row["disturbance"] for row in chosen if row["disturbance"] != "none")
+    for name in names:
+        points = [row for row in chosen if row["disturbance"] == name]
         yield name, undisturbed + sorted(points, key=lambda row: row["size"])
 
 

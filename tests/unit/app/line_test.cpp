@@ -40,7 +40,7 @@ struct Standing {
   }
 };
 
-Standing standing(const Robot& robot, const Counts& counts) {
+Standing standing_at(const Robot& robot, const Counts& counts) {
   Standing at{robot, RobotKinematics::create(robot).value(), {}};
   for (const Axis& axis : robot.axes) {
     const auto given = counts.find(axis.name);
@@ -73,7 +73,7 @@ TEST(StraightLine, StaysWithinItsDeviationEverywhereBetweenItsRows) {
   std::mt19937_64 generator(1);
   std::uniform_real_distribution<double> far(-12.0, 12.0);
   int lines = 0;
-  for (const Standing& at : {standing(test::neuro(), neuro_counts), standing(gantry(), gantry_counts)}) {
+  for (const Standing& at : {standing_at(test::neuro(), neuro_counts), standing_at(gantry(), gantry_counts)}) {
     for (int draw = 0; draw < 40; ++draw) {
       const std::optional<Vector3d> entry =
           draw % 2 == 0 ? std::optional(at.beside(0.0, 0.0, -60.0)) : std::nullopt;
@@ -125,7 +125,7 @@ TEST(StraightLine, StaysWithinItsDeviationEverywhereBetweenItsRows) {
 }
 
 TEST(StraightLine, AlongTheProbeOfTheNeuroMovesItsInsertionAlone) {
-  const Standing at = standing(test::neuro(), neuro_counts);
+  const Standing at = standing_at(test::neuro(), neuro_counts);
   const auto program =
       line_program(at.robot, at.kinematics, at.positions,
                    {at.beside(0.0, 0.0, 8.0), entry_at(at.kinematics, at.positions), 0.01, 5.0});
@@ -141,7 +141,7 @@ std::string refusal(const Standing& at, const LineRequest& request) {
 }
 
 TEST(StraightLine, IsRefusedWithThePlaceOnItWhereAnAxisOrThePoseEnds) {
-  const Standing neuro = standing(test::neuro(), neuro_counts);
+  const Standing neuro = standing_at(test::neuro(), neuro_counts);
   const auto entry = entry_at(neuro.kinematics, neuro.positions);
   EXPECT_THAT(refusal(neuro, {neuro.beside(0.0, 0.0, 40.0), entry, 0.1, 5.0}),
               testing::AllOf(HasSubstr("RANGE: At "),
@@ -158,7 +158,7 @@ TEST(StraightLine, IsRefusedWithThePlaceOnItWhereAnAxisOrThePoseEnds) {
 
   Counts steep = gantry_counts;
   steep["insertion"] = 100;
-  const Standing chain = standing(gantry(), steep);
+  const Standing chain = standing_at(gantry(), steep);
   EXPECT_THAT(refusal(chain, {chain.beside(100.0, 0.0, 0.0), std::nullopt, 0.1, 5.0}), HasSubstr("INSERTED"));
   EXPECT_THAT(refusal(chain, {chain.beside(0.0, 0.0, 90.0), std::nullopt, 0.1, 5.0}),
               HasSubstr("of the line's 90 mm: "));
@@ -174,7 +174,7 @@ TEST(StraightLine, PastASingularPoseIsRefused) {
   }
   Counts counts = neuro_counts;
   counts["pitch"] = static_cast<std::int32_t>(1.40 * loose.find("pitch")->counts_per_unit);
-  const Standing at = standing(loose, counts);
+  const Standing at = standing_at(loose, counts);
   const auto entry = entry_at(at.kinematics, at.positions);
   const double depth_mm = *at.kinematics.depth_mm(at.positions);
   EXPECT_THAT(refusal(at, {at.beside(2.0 * depth_mm * std::tan(0.17), 0.0, 0.0), entry, 0.1, 5.0}),
@@ -198,7 +198,7 @@ Ran run(const Robot& robot, const Counts& counts, std::uint64_t seed,
   } else {
     loop.make_all_ready();
   }
-  Standing at = standing(robot, {});
+  Standing at = standing_at(robot, {});
   std::vector<double> offsets;
   MoveLeg approach;
   for (const Axis& axis : robot.axes) {

@@ -115,8 +115,8 @@ double stray_anywhere_within_deadband_and_play(Gauss& noise, const Axis& axis) {
 /** The share of points that end in the ellipsoids of treatment point and tip: every joint strays, the robot
  * is registered anew by fiducials that are seen where they are not, and so is the target. */
 std::pair<double, double> shares_within(const AtPose& at, const Stray& stray, std::uint64_t seed) {
-  constexpr int samples = 20000;
-  const ErrorBudget budget = budget_of(at);
+  constexpr int samples = 5000;
+  ErrorBudget budget = budget_of(at);
   const double tip_mm = at.kinematics.probe().treatment_to_tip_mm;
   Gauss noise(seed);
   const std::optional<RegistrationFit>& fit = at.accuracy.registration;
@@ -132,8 +132,6 @@ std::pair<double, double> shares_within(const AtPose& at, const Stray& stray, st
     const Vector3d off = point - ellipsoid.centre_mm;
     return off.dot(inverse * off) <= chi_square_95;
   };
-  const Matrix3d treatment_inverse = budget.treatment.covariance_mm2.inverse();
-  const Matrix3d tip_inverse = budget.tip.covariance_mm2.inverse();
   int treatment = 0;
   int tip = 0;
   for (int sample = 0; sample < samples; ++sample) {
@@ -149,7 +147,13 @@ std::pair<double, double> shares_within(const AtPose& at, const Stray& stray, st
         seen.col(each) += noise(Vector3d(Vector3d::Constant(fiducial_sd_mm)));
       }
       scanner_from_zframe = Pose(Eigen::umeyama(on_robot, seen, false));
+      AtPose as_seen = at;
+      as_seen.accuracy.registration->residual_mm =
+          std::sqrt((seen - scanner_from_zframe * on_robot).colwise().squaredNorm().mean());
+      budget = budget_of(as_seen);
     }
+    const Matrix3d treatment_inverse = budget.treatment.covariance_mm2.inverse();
+    const Matrix3d tip_inverse = budget.tip.covariance_mm2.inverse();
     const Pose treated = scanner_from_zframe * at.kinematics.zframe_from_treatment(positions).value();
     const Vector3d strayed = image_root * noise(Vector3d(Vector3d::Ones())) +
                              noise(Vector3d(Vector3d::Constant(at.robot.calibration_mm.value_or(0.0))));
@@ -159,9 +163,10 @@ std::pair<double, double> shares_within(const AtPose& at, const Stray& stray, st
   return {static_cast<double>(treatment) / samples, static_cast<double>(tip) / samples};
 }
 
+/** The ellipsoid is a little too large where a registration of few fiducials is a part of it among others. */
 void expect_95_percent(const std::pair<double, double>& shares) {
-  EXPECT_THAT(shares.first, testing::AllOf(testing::Ge(0.94), testing::Le(0.96)));
-  EXPECT_THAT(shares.second, testing::AllOf(testing::Ge(0.94), testing::Le(0.96)));
+  EXPECT_THAT(shares.first, testing::AllOf(testing::Ge(0.94), testing::Le(0.97)));
+  EXPECT_THAT(shares.second, testing::AllOf(testing::Ge(0.94), testing::Le(0.97)));
 }
 
 TEST(ErrorBudget, NineteenOfTwentyTipsEndInTheEllipsoidAtEachPoseOfBothRobots) {
@@ -224,10 +229,11 @@ TEST(ErrorBudget, TheRegistrationsShareIsTheTargetErrorOfFitzpatrick) {
     ratio += (with.treatment.centre_mm - centroid).cross(axes.col(axis)).squaredNorm() / f2;
   }
   const double fle2 = 3.0 * fiducial_sd_mm * fiducial_sd_mm;
-  const double tre2 = fle2 / count * (1.0 + ratio / 3.0);
+  // 3 F / chi-square, F(0.95; 3, 9) = 3.8625 from a table.
+  const double tre2 = 3.0 * 3.8625 / 7.8147 * fle2 / count * (1.0 + ratio / 3.0);
   at.accuracy.registration.reset();
   const ErrorBudget without = budget_of(at);
-  EXPECT_NEAR((with.treatment.covariance_mm2 - without.treatment.covariance_mm2).trace(), tre2, 1e-9);
+  EXPECT_NEAR((with.treatment.covariance_mm2 - without.treatment.covariance_mm2).trace(), tre2, 1e-4 * tre2);
 }
 
 TEST(ErrorBudget, AnAxisWithoutRoomToComeFromBelowBringsItsWholePlay) {
