@@ -69,8 +69,9 @@ class Fit {
   [[nodiscard]] double sd_mm(std::size_t pose) const { return sd_mm_[pose]; }
   [[nodiscard]] bool states_mm() const { return states_mm_; }
 
-  /** The frame in which points, and points ahead of them, lie best (S. Umeyama, 1991). */
-  void place_frame() {
+  /** The frame in which points, and points ahead of them, lie best (S. Umeyama, 1991). False when they lie
+   * far better in a frame that no turn leads to: then they are a mirror image. */
+  [[nodiscard]] bool place_frame() {
     const std::vector<Pose> tools = *model_.poses(changes_, poses_);
     const auto count = static_cast<Index>(poses_.size());
     Eigen::Matrix3Xd from(3, directed_ ? 2 * count : count);
@@ -85,9 +86,18 @@ class Fit {
         to.col(count + place) = pose.point_mm + lever_mm * *pose.direction;
       }
     }
-    if (frame_ > 0) {
-      tracker_from_zframe_.matrix() = Eigen::umeyama(from, to, false);
+    if (frame_ == 0) {
+      return true;
     }
+    tracker_from_zframe_.matrix() = Eigen::umeyama(from, to, false);
+    const auto misses_of = [&](const Eigen::Matrix3Xd& seen) {
+      const Pose best(Eigen::Matrix4d(Eigen::umeyama(from, seen, false)));
+      return (best * from - seen).squaredNorm();
+    };
+    constexpr double far_better = 0.25;
+    const double as_seen = misses_of(to);
+    to.row(0) *= -1.0;
+    return misses_of(to) > far_better * as_seen;
   }
 
   /** Misses of points in mm and of directions, six or three rows a pose; empty when a pose cannot be. */
@@ -138,10 +148,13 @@ class Fit {
       VectorXd behind = x;
       ahead[place] += difference;
       behind[place] -= difference;
+      // At the end of what the kinematics allow, from the side that is left.
       const auto up = misses(ahead, moved);
       const auto down = misses(behind, moved);
+      const double way = (up ? difference : 0.0) + (down ? difference : 0.0);
       columns.col(place) =
-          up && down ? normalised((*up - *down) / (2.0 * difference)) : VectorXd::Zero(rows());
+          way > 0.0 ? normalised((up ? *up : *misses(x, moved)) - (down ? *down : *misses(x, moved))) / way
+                    : VectorXd(VectorXd::Zero(rows()));
     }
     return columns;
   }
@@ -469,6 +482,9 @@ tl::expected<Calibration, RobotError> calibrate(const Robot& robot, std::string_
   if (const auto checked = check_surroundings(model, poses, table, candidates, found.held); !checked) {
     return tl::unexpected(checked.error());
   }
+  if (const auto problem = deviation_problem(options.sd_mm, options.sd_rad)) {
+    return refused(table, *problem, "the tracker's own deviation, or none");
+  }
   Fit fit(model, poses, options);
   const std::size_t unknowns = candidates.size() + static_cast<std::size_t>(fit.frame_columns());
   const std::size_t a_pose = fit.directed() ? 5 : 3;
@@ -479,7 +495,10 @@ tl::expected<Calibration, RobotError> calibrate(const Robot& robot, std::string_
         std::to_string(poses.size()) + " poses are given for " + std::to_string(unknowns) + " unknowns",
         std::to_string(needed) + " poses at least, spread over the workspace");
   }
-  fit.place_frame();
+  if (!fit.place_frame()) {
+    return refused(table, "the measured points are a mirror image of those that the robot's file gives",
+                   "right-handed coordinates: x, y and z of the tracker in their order, with their signs");
+  }
   const auto rms_mm = [&] {
     return std::sqrt(fit.squares(fit.misses(), 0) / static_cast<double>(poses.size()));
   };
@@ -527,9 +546,21 @@ tl::expected<Calibration, RobotError> calibrate(const Robot& robot, std::string_
   std::vector<Index> all(static_cast<std::size_t>(columns.cols()));
   std::iota(all.begin(), all.end(), 0);
   const double chi_square = fit.normalised(rows).squaredNorm() / static_cast<double>(fit.freedom());
-  const MatrixXd covariance =
-      covariance_of(normal, all).value_or(MatrixXd::Zero(columns.cols(), columns.cols())) *
-      std::max(1.0, chi_square);
+  const auto freedom = static_cast<double>(fit.freedom());
+  constexpr double once_in = 1e-4;
+  if (chi_square * freedom < boost::math::quantile(boost::math::chi_squared(freedom), once_in)) {
+    return refused(
+        table,
+        "the poses fit " + text_of(std::sqrt(chi_square)) + " times as far as the stated deviation says",
+        "the deviation that the tracker has, or none: then it is estimated");
+  }
+  const auto known = covariance_of(normal, all);
+  if (!known) {
+    return refused(
+        table, "the fit ends where the kinematics end: the poses do not tell how well it is known",
+        "numbers of the file that are nearer to the robot's, or the ones at the end held (--hold)");
+  }
+  const MatrixXd covariance = *known * std::max(1.0, chi_square);
   const boost::math::students_t student(static_cast<double>(fit.freedom()));
   for (std::size_t place = 0; place < fit.kept().size(); ++place) {
     const FileNumber& number = model.numbers()[fit.kept()[place]];

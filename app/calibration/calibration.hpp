@@ -82,8 +82,9 @@ struct Calibration {
  * Fits the numbers of `robot`, which was read from `text`. `table` names the measured poses in errors.
  *
  * Refused: a robot without kinematics, a name in `hold` that no number has, too few poses (with the number
- * needed), poses that fix no frame, ones from which a number cannot be changed by its plausible error within
- * the domain of the kinematics, and a table that the kinematics misses by more than 20 mm.
+ * needed), poses that fix no frame, are a mirror image, or fit far better than the stated deviation, ones
+ * from which a number cannot be changed by its plausible error within the domain of the kinematics, and a
+ * table that the kinematics misses by more than 20 mm.
  */
 tl::expected<Calibration, RobotError> calibrate(const Robot& robot, std::string_view text,
                                                 const std::vector<MeasuredPose>& poses,

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "robot/table_reader.hpp"
 
@@ -100,6 +101,11 @@ class Reader {
       return refused("", std::to_string(fields.size()) + " fields",
                      std::to_string(width_) + " as in the header");
     }
+    const auto [before, is_new] = seen_.emplace(boost::join(fields, ","), line_);
+    if (!is_new) {
+      return refused("", "the row is that of line " + std::to_string(before->second) + " again",
+                     "each measurement once; one that was made again has digits of its own");
+    }
     MeasuredPose pose;
     pose.line = line_;
     pose.positions.resize(robot_.axes.size());
@@ -149,8 +155,8 @@ class Reader {
       }
       pose.direction->normalize();
     }
-    if (pose.sd_mm.value_or(1.0) <= 0.0 || pose.sd_rad.value_or(1.0) <= 0.0) {
-      return refused("sd", "a standard deviation is not above 0", "above 0, or no such column");
+    if (const auto problem = deviation_problem(pose.sd_mm, pose.sd_rad)) {
+      return refused("sd", *problem, "such a deviation, or no such column");
     }
     return pose;
   }
@@ -158,12 +164,27 @@ class Reader {
   std::string file_;
   const Robot& robot_;
   std::vector<Column> columns_;
+  std::map<std::string, std::uint32_t> seen_; /**< rows, with their lines */
   std::uint32_t line_ = 1;
   std::size_t width_ = 0;
   bool directed_ = false;
 };
 
 }  // namespace
+
+std::optional<std::string> deviation_problem(const std::optional<double>& sd_mm,
+                                             const std::optional<double>& sd_rad) {
+  const auto beyond = [](double value, double least, double most) {
+    return !(value >= least && value <= most);
+  };
+  if (sd_mm && beyond(*sd_mm, 1e-4, 20.0)) {
+    return "a standard deviation of " + text_of(*sd_mm) + " mm is not from 0.0001 to 20 mm";
+  }
+  if (sd_rad && beyond(*sd_rad, 1e-6, 0.5)) {
+    return "a standard deviation of " + text_of(*sd_rad) + " rad is not from 0.000001 to 0.5 rad";
+  }
+  return std::nullopt;
+}
 
 tl::expected<std::vector<MeasuredPose>, RobotError> read_poses(std::string_view text, const std::string& file,
                                                                const Robot& robot) {

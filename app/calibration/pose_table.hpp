@@ -36,9 +36,15 @@ struct MeasuredPose {
 /** More rows are refused. */
 inline constexpr std::size_t most_measured_poses = 10000;
 
+/** Why these deviations cannot be those of a tracker (0.0001 to 20 mm, 0.000001 to 0.5 rad); nothing when
+ * they can. */
+std::optional<std::string> deviation_problem(const std::optional<double>& sd_mm,
+                                             const std::optional<double>& sd_rad);
+
 /** Reads the table; the error names line and column. Refused: an axis without a column, an unknown or a
  * repeated column, a field that is no finite number, a position beyond the axis' soft limits, a direction
- * that is no unit vector (1e-3), a deviation that is not above 0. `file` names the table in errors. */
+ * that is no unit vector (1e-3), a deviation that no tracker has, a row that stands there twice. `file` names
+ * the table in errors. */
 tl::expected<std::vector<MeasuredPose>, RobotError> read_poses(std::string_view text, const std::string& file,
                                                                const Robot& robot);
 

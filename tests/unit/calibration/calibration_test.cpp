@@ -265,6 +265,28 @@ TEST_F(CalibrationOfTheNeuro, PosesThatCannotDoAreRefusedWithWhatIsNeeded) {
   EXPECT_THAT(refusal_of(one_place), HasSubstr("do not fix the frame"));
 }
 
+TEST_F(CalibrationOfTheNeuro, AMirrorImageIsRefusedForWhatItIs) {
+  auto mirrored = poses(40);
+  for (MeasuredPose& pose : mirrored) {
+    pose.point_mm.x() *= -1.0;
+    pose.direction.reset();
+  }
+  EXPECT_THAT(refusal_of(mirrored), HasSubstr("mirror image"));
+}
+
+TEST_F(CalibrationOfTheNeuro, ADeviationThatNoTrackerHasOrThatTheMissesBelieIsRefused) {
+  CalibrationOptions stated;
+  for (const double sd_mm : {1e-9, 50.0, std::nan("")}) {
+    stated.sd_mm = sd_mm;
+    EXPECT_THAT(refusal_of(poses(40), stated), HasSubstr("is not from 0.0001 to 20 mm")) << sd_mm;
+  }
+  stated.sd_mm = 2.0;
+  EXPECT_THAT(refusal_of(poses(40), stated), HasSubstr("times as far as the stated deviation says"));
+  stated.sd_mm = 1e-4;
+  EXPECT_TRUE(calibrated(poses(40), stated))
+      << "too small a one is belied by the misses, and counts for nothing";
+}
+
 TEST(Calibration, OfARobotWithoutKinematicsIsRefused) {
   const RobotText bench(INTERLOCK_TEST_ROBOTS "/bench.toml");
   const auto found = calibrate(bench.robot, bench.text, {MeasuredPose{}}, "poses.csv", {});

@@ -73,7 +73,11 @@ INSTANTIATE_TEST_SUITE_P(
                  std::string(header) + ",direction_x,direction_y,direction_z\n1,1,0,0,1,1,1,1,0,0,2",
                  "poses.csv:2: direction_x: the direction is of length 2"},
         BadTable{"NoDeviation", std::string(header) + ",sd [mm]\n1,1,0,0,1,1,1,1,0",
-                 "poses.csv:2: sd: a standard deviation is not above 0"}),
+                 "poses.csv:2: sd: a standard deviation of 0 mm is not from 0.0001 to 20 mm"},
+        BadTable{"TinyDeviation", std::string(header) + ",sd [rad]\n1,1,0,0,1,1,1,1,1e-9",
+                 "poses.csv:2: sd: a standard deviation of 1e-09 rad is not from"},
+        BadTable{"SameRow", with("2,1,0,0,1,1,1,1\n 1,1,0, 0,1,1,1,1"),
+                 "poses.csv:4: the row is that of line 2 again"}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 TEST_P(PoseTableThatIsBad, IsRefusedWithLineColumnAndWhatWasExpected) {
