@@ -175,6 +175,11 @@ Result<void> identify(const IdentifyOptions& options, const Installation& instal
         .and_then([&](const Identified& measured) {
           const auto changes = changes_of(on.robot, *on.robot.find(options.axis), measured);
           return write_file(options.svg, identified_svg(measured, title_of(on, options.axis)))
+              .and_then([&]() -> Result<void> {
+                return options.write.empty()
+                           ? Result<void>()
+                           : believable(on.robot, options.axis, measured).map_error(robot_failure);
+              })
               .and_then([&] { return write_robot(options.write, on, options.axis, changes); })
               .map([&] {
                 Json found = interlock::to_json(measured);

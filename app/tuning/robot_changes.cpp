@@ -17,7 +17,10 @@ constexpr double same_speed = 0.005;
 constexpr double same_drive = 0.002;
 constexpr double same_play = 0.75;
 /** The kernel believes that homing is never slower: loaded and cold it is. */
-constexpr double slowest_share = 0.85;
+constexpr double cold_share = 0.85;
+/** Of full speed, and for the ratio of the directions. */
+constexpr double worst_fit_percent = 2.0;
+constexpr double compared_share = 0.2;
 constexpr double longest_stall_s = 0.5;
 /** Faster plans leave nothing for the controller to catch up with. */
 constexpr double fastest_plan = 0.85;
@@ -29,6 +32,18 @@ void raise(std::uint32_t& number, double least) { number = std::max(number, whol
 
 void lower(std::uint32_t& number, double most) {
   number = std::min(number, std::max(1U, static_cast<std::uint32_t>(most)));
+}
+
+/** Speed of the slower direction, of that of the faster one, where it is the least at a strong drive. */
+double slower_direction(const Identified& found) {
+  double least = 1.0;
+  for (const DriveSpeed& at : found.speeds) {
+    const auto [slower, faster] = std::minmax(at.up_counts_per_s, at.down_counts_per_s);
+    if (slower > compared_share * found.full_speed_counts_per_s) {
+      least = std::min(least, slower / faster);
+    }
+  }
+  return least;
 }
 
 void take_mechanics(Axis& axis, const Identified& found, double period_s) {
@@ -61,6 +76,8 @@ void take_homing(Axis& axis, const Robot& robot, const Identified& found, double
     return found.full_speed_counts_per_s * (drive - found.dead_zone_drive) /
            (axis.drive.max - found.dead_zone_drive);
   };
+  // Against its load, in whichever direction that is, the axis has less than the speed of the other.
+  const double slowest_share = cold_share * slower_direction(found);
   // So fast that the way that a stall asks for, and what the axis coasts after the faster approach, end in
   // the longest time that a stall may allow.
   const double coast = speed_at(homing.drive) * (found.lag_s + (ILK_LATENCY_TICKS + 1) * period_s);
@@ -259,6 +276,19 @@ nlohmann::ordered_json to_json(const Identified& found) {
           {"noise_counts", found.noise_counts},
           {"hysteresis_counts", or_null(found.hysteresis_counts)},
           {"speeds", std::move(speeds)}};
+}
+
+tl::expected<void, RobotError> believable(const Robot& robot, const std::string& axis,
+                                          const Identified& found) {
+  if (found.fit_percent <= worst_fit_percent) {
+    return {};
+  }
+  return tl::unexpected(RobotError{
+      robot.origin.file, 0, axis,
+      "the measured speeds lie off a straight line over drive by " + std::to_string(found.fit_percent) +
+          " % of full speed",
+      "2 % at most: let the motor cool, or warm, and measure again; a resonance that moves is followed "
+      "without any number in the file"});
 }
 
 tl::expected<std::string, RobotError> changed_file(const Robot& robot, const std::string& name,

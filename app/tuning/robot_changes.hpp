@@ -51,6 +51,14 @@ nlohmann::ordered_json to_json(const std::vector<NumberChange>& changes);
  */
 std::vector<NumberChange> changes_of(const Robot& robot, const Axis& axis, const Identified& found);
 
+/**
+ * Whether numbers of the file may follow from it. Not when the speeds lie off their line over drive by more
+ * than 2 % of full speed: then the motor was another one at the end of the measurement than at its beginning
+ * (warm, its resonance elsewhere), or has no straight line, and dead zone and lag mean nothing.
+ */
+tl::expected<void, RobotError> believable(const Robot& robot, const std::string& axis,
+                                          const Identified& found);
+
 /** The robot's file with the changes, all else as it stands; the error is that of a file which the kernel
  * would refuse. `name` is that of the new file, for the error. */
 tl::expected<std::string, RobotError> changed_file(const Robot& robot, const std::string& name,

@@ -23,6 +23,11 @@ constexpr double record_period_s = 0.005;
 tl::unexpected<std::string> failed(std::string what) { return tl::unexpected(std::move(what)); }
 
 std::string ended(const Robot& robot, const TaskStatus& status) {
+  if (is_open(status.phase)) {
+    return "the motion waits still, after half an hour of simulated time: of a biopsy, images that "
+           "contradict what "
+           "is believed, or a closed gate";
+  }
   const Axis* axis = robot.at_slot(status.slot);
   return (axis == nullptr ? "the robot" : axis->name) + ": the task ended in phase " +
          std::to_string(static_cast<int>(status.phase)) + " for reason " +

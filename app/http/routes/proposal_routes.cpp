@@ -154,9 +154,11 @@ Reply ProposalRoutes::robot_file(const Call& call) const {
     }
     const Robot& robot = context_.robot;
     const std::string& axis = proposal.axis;
-    const auto changes = changes_of(robot, *robot.find(axis), Identified{*proposal.measured, axis});
+    const Identified found{*proposal.measured, axis};
+    const auto changes = changes_of(robot, *robot.find(axis), found);
     const std::string name = robot.name + ".toml";
-    const auto text = changed_file(robot, name, axis, changes);
+    const auto text =
+        believable(robot, axis, found).and_then([&] { return changed_file(robot, name, axis, changes); });
     return Success{.body = {{"name", name},
                             {"changes", to_json(changes)},
                             {"text", text ? json(*text) : json()},

@@ -241,5 +241,42 @@ TEST(GainSearch, FindsGainsThatAreNoWorseThanThoseItBeganWith) {
               0.2 * shipped->rms_velocity_error_percent);
 }
 
+TEST(Identification, OfALoadedAxisTheSlowerDirectionCountsForItsSlowestSpeeds) {
+  for (const double load : {0.5, -0.5}) {
+    SCOPED_TRACE(load);
+    const Axis axis = *neuro().find("yaw");
+    plant::Parameters plant = plant_with(neuro(), axis, {0.015, 1000, 5000, 4});
+    plant.axis[axis.slot].load_fraction = load;
+    const auto found = identified(neuro(), axis, plant);
+    ASSERT_TRUE(found) << found.error();
+    const auto robot = changed(neuro(), axis, changes_of(neuro(), axis, *found));
+    ASSERT_TRUE(robot) << robot.error().message();
+    const Axis is = *robot->find("yaw");
+    const auto slower_at = [&](std::uint32_t drive) {
+      return 500.0 * (drive - 0.015 * is.drive.max) / (0.985 * is.drive.max);
+    };
+    EXPECT_LE(is.homing->speed_counts_per_s, slower_at(is.homing->drive));
+    EXPECT_LE(is.homing->slow_speed_counts_per_s, slower_at(is.homing->slow_drive));
+    const auto again = identified(*robot, is, plant);
+    ASSERT_TRUE(again) << again.error();
+    EXPECT_FALSE(again->homing_error) << *again->homing_error;
+  }
+}
+
+TEST(Identification, OfAMotorThatChangesMeanwhileNoFileFollows) {
+  const Axis axis = *prostate().find("rotation");
+  plant::Parameters plant = shipped_plant(prostate());
+  const auto steady = identified(prostate(), axis, plant);
+  ASSERT_TRUE(steady) << steady.error();
+  EXPECT_TRUE(believable(prostate(), "rotation", *steady));
+  plant.axis[axis.slot].resonance_drift_hz = 400;
+  plant.axis[axis.slot].heat_time_s = 10;
+  const auto drifting = identified(prostate(), axis, plant);
+  ASSERT_TRUE(drifting) << drifting.error();
+  const auto refused = believable(prostate(), "rotation", *drifting);
+  ASSERT_FALSE(refused) << drifting->fit_percent;
+  EXPECT_NE(refused.error().message().find("off a straight line"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace interlock
