@@ -31,8 +31,10 @@ constexpr double largest_frame_deviation = 10.0;
 constexpr double farthest_rms_mm = 20.0;
 /** Of a number's plausible error, for differences. */
 constexpr double difference = 1e-3;
-/** Of a pose that cannot be: no step leads there. */
-constexpr double impossible = 1e6;
+/** Misses of a pose that cannot be, in standard deviations: more than those of any that can. */
+constexpr double impossible = 1e12;
+/** Farther than so many plausible errors no number of a robot is from its file. */
+constexpr double farthest_change = 5.0;
 constexpr int most_rounds = 10;
 constexpr double lever_mm = 100.0;
 
@@ -546,6 +548,16 @@ tl::expected<Calibration, RobotError> calibrate(const Robot& robot, std::string_
   std::vector<Index> all(static_cast<std::size_t>(columns.cols()));
   std::iota(all.begin(), all.end(), 0);
   const double chi_square = fit.normalised(rows).squaredNorm() / static_cast<double>(fit.freedom());
+  for (const std::size_t number : fit.kept()) {
+    const FileNumber& moved = model.numbers()[number];
+    if (std::abs(fit.change(number)) > farthest_change * moved.plausible) {
+      return refused(table,
+                     moved.name() + " would have to be wrong by " +
+                         text_of(fit.change(number) * moved.per_unit) + ' ' + moved.unit,
+                     "five times " + text_of(moved.plausible * std::abs(moved.per_unit)) + ' ' + moved.unit +
+                         " at most: check how the poses were measured, and the robot's file");
+    }
+  }
   const auto freedom = static_cast<double>(fit.freedom());
   constexpr double once_in = 1e-4;
   if (chi_square * freedom < boost::math::quantile(boost::math::chi_squared(freedom), once_in)) {

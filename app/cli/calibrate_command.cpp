@@ -80,6 +80,10 @@ Result<void> write_without_outliers(const std::filesystem::path& file, const Cal
 Result<void> calibrate(const CalibrateOptions& options, const Installation& installation,
                        std::ostream& output) {
   return installation.robot(options.robot).and_then([&](const std::filesystem::path& file) -> Result<void> {
+    if (is_same_file(options.write, options.poses)) {
+      return failed(ExitCode::usage,
+                    options.write.string() + " would be overwritten by another file; choose another name");
+    }
     const Result<Robot> robot = load_robot(file).map_error(robot_failure);
     const Result<std::string> text =
         robot.and_then([&](const Robot&) { return text_of_file(file, "a robot"); });

@@ -11,6 +11,8 @@ constexpr double largest_gain = 1e4;
 constexpr double largest_number = 1e10;
 constexpr double slowest_full_speed = 1e-3;
 constexpr double longest_s = 1.0;
+/** Of full speed, that the integral may have while the profile stands. */
+constexpr double standing_share = 0.02;
 
 ControlResult<void> check(const PivInput& input) noexcept {
   const VelocityEstimate measured = input.velocity.value_or(VelocityEstimate{});
@@ -57,6 +59,11 @@ ControlResult<PivOutput> PivController::update(const PivInput& input) noexcept {
   turn(input.direction);
   const Setpoint& setpoint = input.setpoint;
   const double full = rules_.full_speed_counts_per_s;
+  // What a motor lacks it lacks in proportion to its speed: less of it is to be made up for as the profile
+  // slows down, or the axis would pass its target.
+  const double bound = std::min(rules_.integral_counts_per_s,
+                                standing_share * full + std::abs(setpoint.velocity_counts_per_s));
+  integral_ = std::clamp(integral_, -bound, bound);
   const double position_error = setpoint.position_counts - input.position_counts;
   const double velocity_desired =
       std::clamp(setpoint.velocity_counts_per_s + rules_.gains.position_per_s * position_error, -full, full);
@@ -67,7 +74,7 @@ ControlResult<PivOutput> PivController::update(const PivInput& input) noexcept {
   const double desired = velocity_desired + setpoint.acceleration_counts_per_s2 * rules_.lead_s +
                          rules_.gains.velocity * error + integral_;
   output_ = held(desired, input);
-  integrate(error, desired, input.elapsed_s);
+  integrate(error, desired, input.elapsed_s, bound);
   return PivOutput{desired, output_};
 }
 
@@ -94,13 +101,12 @@ double PivController::held(double desired, const PivInput& input) const noexcept
   return direction_ * std::clamp(along, std::min(before - step, most), before + step);
 }
 
-void PivController::integrate(double error, double desired, double elapsed_s) noexcept {
+void PivController::integrate(double error, double desired, double elapsed_s, double bound) noexcept {
   const bool held_below = output_ < desired;
   const bool held_above = output_ > desired;
   if ((error > 0.0 && held_below) || (error < 0.0 && held_above)) {
     return;
   }
-  const double bound = rules_.integral_counts_per_s;
   integral_ = std::clamp(integral_ + rules_.gains.integral_per_s * error * elapsed_s, -bound, bound);
 }
 

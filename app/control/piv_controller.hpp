@@ -81,7 +81,7 @@ class PivController {
 
   void turn(int direction) noexcept;
   [[nodiscard]] double held(double desired, const PivInput& input) const noexcept;
-  void integrate(double error, double desired, double elapsed_s) noexcept;
+  void integrate(double error, double desired, double elapsed_s, double bound) noexcept;
 
   PivRules rules_;
   int direction_ = 1;

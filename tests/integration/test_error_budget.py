@@ -37,13 +37,13 @@ def test_the_budget_grows_by_what_is_stated_and_is_kept_with_the_motion(
     register(robot)
     set_target(robot)
     of_joints = budget(robot)
-    assert not_stated(of_joints) == ["registration", "calibration", "image"]
+    assert not_stated(of_joints) == ["registration", "play", "calibration", "image"]
     register(robot, **FIT)
     registered = budget(robot)
-    assert not_stated(registered) == ["calibration", "image"]
+    assert not_stated(registered) == ["play", "calibration", "image"]
     set_target(robot, target_covariance_mm2=COVARIANCE)
     found = budget(robot)
-    assert not_stated(found) == ["calibration"]
+    assert not_stated(found) == ["play", "calibration"]
     longest = [each["treatment"]["half_axes_mm"][0] for each in (of_joints, registered, found)]
     assert longest == sorted(longest)
     for point in ("treatment", "tip"):

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <string_view>
 
@@ -140,6 +141,11 @@ tl::expected<LineDraft, Problem> line_of(const json& body) {
   LineDraft line;
   line.along_mm = fields.number("along_mm", -longest_line_mm, longest_line_mm);
   if (const auto point = fields.numbers("target_point", 3)) {
+    constexpr double farthest_mm = 1e5;
+    if (std::ranges::any_of(*point, [](double each) { return std::abs(each) > farthest_mm; })) {
+      return fail(invalid("target_point", "it is farther than 100 m from the scanner's origin",
+                          "three numbers in mm"));
+    }
     line.target_point = Point{(*point)[0], (*point)[1], (*point)[2]};
     fields.require({{"keep", "what the probe keeps: entry or direction"}});
   }
@@ -148,6 +154,10 @@ tl::expected<LineDraft, Problem> line_of(const json& body) {
   line.speed_mm_s = fields.number("speed_mm_s", 0.01, 1000.0).value_or(usual_speed_mm_s);
   if (fields.problem()) {
     return fail(*fields.problem());
+  }
+  if (line.along_mm && line.keeps_direction) {
+    return fail(invalid("keep", "a line along the probe's axis keeps both, its direction and its entry point",
+                        "along_mm without keep, or target_point with it"));
   }
   if (line.along_mm.has_value() == line.target_point.has_value()) {
     return fail(invalid("along_mm", "along_mm and target_point are both given, or neither is.",
