@@ -11,7 +11,8 @@ constexpr double largest_gain = 1e4;
 constexpr double largest_number = 1e10;
 constexpr double slowest_full_speed = 1e-3;
 constexpr double longest_s = 1.0;
-/** Of full speed, that the integral may have while the profile stands. */
+/** Of full speed, that is left of the integral when the profile comes to stand; for what holds the axis then.
+ */
 constexpr double standing_share = 0.02;
 
 ControlResult<void> check(const PivInput& input) noexcept {
@@ -61,8 +62,9 @@ ControlResult<PivOutput> PivController::update(const PivInput& input) noexcept {
   const double full = rules_.full_speed_counts_per_s;
   // What a motor lacks it lacks in proportion to its speed: less of it is to be made up for as the profile
   // slows down, or the axis would pass its target.
-  const double bound = std::min(rules_.integral_counts_per_s,
-                                standing_share * full + std::abs(setpoint.velocity_counts_per_s));
+  const double pace = std::abs(setpoint.velocity_counts_per_s);
+  const double bound = pace == 0.0 ? rules_.integral_counts_per_s
+                                   : std::min(rules_.integral_counts_per_s, standing_share * full + pace);
   integral_ = std::clamp(integral_, -bound, bound);
   const double position_error = setpoint.position_counts - input.position_counts;
   const double velocity_desired =

@@ -19,8 +19,8 @@
  * move's own ceiling, in the direction of travel: an output against it is no drive, never a reversal.
  *
  * Anti-windup is by conditional integration: while the output is held at a bound, or by the limit of its
- * rate, the integral only moves the way that leads off it. The integral has a bound of its own, and a new
- * direction of travel empties it.
+ * rate, the integral only moves the way that leads off it. The integral has a bound of its own, which goes
+ * down with the speed of a profile that comes to rest, and a new direction of travel empties it.
  *
  * The rate of the output is limited, but not where it goes to zero because it points against the travel, nor
  * where the ceiling comes down: nothing delays a stop.

@@ -144,6 +144,25 @@ TEST(PivController, AChangeOfDirectionAndAResetEmptyTheIntegral) {
   EXPECT_EQ(piv.integral_counts_per_s(), 0.0);
 }
 
+/** A motor that makes three fifths of what it should. */
+TEST(PivController, WhatTheMotorLacksIsMadeUpForInProportionToTheProfile) {
+  PivController piv = piv_controller();
+  for (int tick = 0; tick < 5000; ++tick) {
+    (void)piv.update(input(0, 500, 0.6 * 500));
+  }
+  EXPECT_EQ(piv.integral_counts_per_s(), 500.0) << "its own bound, at full pace";
+  for (const double pace : {300.0, 100.0, 10.0}) {
+    (void)piv.update(input(0, pace, pace));
+    EXPECT_LE(piv.integral_counts_per_s(), 0.02 * 1000 + pace) << "an axis would pass its target by the rest";
+  }
+  const double left = piv.integral_counts_per_s();
+  for (int tick = 0; tick < 100; ++tick) {
+    (void)piv.update(input(2, 0, 0));
+  }
+  EXPECT_GT(piv.integral_counts_per_s(), left)
+      << "what holds an axis that should stand elsewhere is still overcome";
+}
+
 TEST(PivController, WithoutAVelocityItFollowsByPositionAlone) {
   PivController piv = piv_controller();
   PivInput blind = input(2, 500, 0);
