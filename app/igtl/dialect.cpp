@@ -46,7 +46,7 @@ std::optional<tl::expected<HoldMessage, Unwanted>> read_hold(const Message& mess
     return std::nullopt;
   }
   if (auto hold = hold_in(is_scan, lower(text->text))) {
-    return std::move(*hold);
+    return *hold;
   }
   return unwanted(
       StatusCode::configuration,

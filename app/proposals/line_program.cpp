@@ -20,7 +20,7 @@ constexpr double lever_mm = 100.0;
 constexpr double difference_mm = 1e-3;
 constexpr std::size_t fewest_rows = 9;
 constexpr std::size_t most_rows = 1025;
-constexpr int samples = 8;
+constexpr int line_samples = 8;
 /** An axis that moves by less than this share of a count stays where it is. */
 constexpr double least_counts = 1e-3;
 constexpr double half_count = 0.5;
@@ -128,7 +128,7 @@ double larger_part(const Eigen::Matrix<double, 6, 1>& deviation) {
 /** Bound of the deviation over all of the trajectory; nothing where a position between rows has no pose. */
 std::optional<double> deviation_bound(const Robot& robot, const RobotKinematics& kinematics, const Line& line,
                                       const AxisPositions& from, const TimedTrajectory& trajectory) {
-  const auto count = static_cast<int>(trajectory.rows() - 1) * samples;
+  const auto count = static_cast<int>(trajectory.rows() - 1) * line_samples;
   AxisPositions positions = from;
   std::vector<Eigen::Matrix<double, 6, 1>> deviations;
   double largest = 0.0;

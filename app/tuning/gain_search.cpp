@@ -7,7 +7,7 @@
 namespace interlock {
 namespace {
 
-constexpr double step = 1.5;
+constexpr double step_factor = 1.5;
 constexpr std::uint32_t late_ticks = 10;
 constexpr double slow_share = 1.0 / 3.0;
 /** A smaller gain of quality is noise. */
@@ -55,7 +55,7 @@ class Search {
     for (int round = 0; round < most_rounds && better; ++round) {
       better = false;
       for (double Gains::* const gain : gains) {
-        for (const double factor : {step, 1 / step}) {
+        for (const double factor : {step_factor, 1 / step_factor}) {
           Gains tried = best.gains;
           tried.*gain = rounded(factor * tried.*gain);
           const auto error = judge(tried);

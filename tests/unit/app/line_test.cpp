@@ -73,7 +73,8 @@ TEST(StraightLine, StaysWithinItsDeviationEverywhereBetweenItsRows) {
   std::mt19937_64 generator(1);
   std::uniform_real_distribution<double> far(-12.0, 12.0);
   int lines = 0;
-  for (const Standing& at : {standing_at(test::neuro(), neuro_counts), standing_at(gantry(), gantry_counts)}) {
+  for (const Standing& at :
+       {standing_at(test::neuro(), neuro_counts), standing_at(gantry(), gantry_counts)}) {
     for (int draw = 0; draw < 40; ++draw) {
       const std::optional<Vector3d> entry =
           draw % 2 == 0 ? std::optional(at.beside(0.0, 0.0, -60.0)) : std::nullopt;
