@@ -271,7 +271,7 @@ std::optional<MatrixXd> covariance_of(const MatrixXd& normal, const std::vector<
   return factor.solve(MatrixXd::Identity(size, size));
 }
 
-/** Which numbers the poses tell, and why not the others. */
+/** Which numbers the poses determine, and why not the others. */
 struct Choice {
   bool frame_is_fixed = true;
   std::vector<std::size_t> kept;
@@ -569,7 +569,7 @@ tl::expected<Calibration, RobotError> calibrate(const Robot& robot, std::string_
   const auto known = covariance_of(normal, all);
   if (!known) {
     return refused(
-        table, "the fit ends where the kinematics end: the poses do not tell how well it is known",
+        table, "the fit ends where the kinematics end: the poses do not show how well it is known",
         "numbers of the file that are nearer to the robot's, or the ones at the end held (--hold)");
   }
   const MatrixXd covariance = *known * std::max(1.0, chi_square);

@@ -9,8 +9,9 @@
  *     HIGH_FREQUENCY         |v| in revolutions per minute -> frequency word of that direction -> drive
  *
  * The resonance of a motor that is driven by frequency moves with its warmth, its load and from one motor to
- * the next, and its whole speed map with it. A motor that is as fast at one frequency as the published map
- * says of another shows by how much: the map follows it (`follow`).
+ * the next, and its whole speed map with it.
+ * By how much shows in the frequency at which the published map has the measured speed: the map follows it
+ * (`follow`).
  *
  * The three linear cards differ in the word that the kernel builds, not in the drive. A speed other than zero
  * gives at least `min_drive`, so that the axis moves; what is too fast gives `max_drive`: clamped, not masked

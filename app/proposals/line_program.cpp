@@ -27,7 +27,7 @@ constexpr double half_count = 0.5;
 
 std::string mm(double value) { return number_text(std::round(value * 1000.0) / 1000.0) + " mm"; }
 
-/** What a line says of the robot at each mm of it. */
+/** What is known of the robot at each mm of a line. */
 class Line {
  public:
   /** `entry` lies on the axis of `start`. */
