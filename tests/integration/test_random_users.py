@@ -5,8 +5,9 @@ import os
 import random
 import signal
 import time
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import suppress
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 
 import httpx
@@ -36,14 +37,36 @@ LEFT_OUT = {
 BEGIN = {"createProposal", "beginJog"}
 OFTEN = BEGIN | {"approveProposal", "abortProposal", "rejectProposal", "renewJog", "actOnMotor"}
 FIRST_IDS = 40
-READY = {
-    "control/request": None,
-    "control/take-over": None,
-    "reset": None,
-    f"motors/{LATERAL}/set-home": {"override_switch": True},
-    f"motors/{LATERAL}/enable": None,
-}
+READY: list[tuple[str, str, dict | None]] = [
+    ("POST", "control/request", None),
+    ("POST", "control/take-over", None),
+    ("POST", "cases", {"label": "of the test"}),
+    ("PUT", "holds/scan", {"active": False}),
+    ("POST", "reset", None),
+    ("POST", f"motors/{LATERAL}/set-home", {"override_switch": True}),
+    ("POST", f"motors/{LATERAL}/enable", None),
+]
 """What a person does before a motion."""
+
+
+def make_ready(client: httpx.Client) -> None:
+    for method, step, settings in READY:
+        client.request(method, f"/api/{step}", json=settings)
+
+
+@contextmanager
+def living_app(client: httpx.Client) -> Iterator[None]:
+    """The calls within may fail because the app was killed or stands still; the next ones find it again."""
+
+    def answers() -> bool:
+        with suppress(httpx.TransportError):
+            return client.get("/api/session").status_code < 600
+        return False
+
+    try:
+        yield
+    except httpx.TransportError:
+        wait_until("the app answers again", answers)
 
 
 @dataclass
@@ -112,10 +135,9 @@ class Caller:
         target = self.target(path, operation.get("parameters", []))
         if operation["operationId"] == "createProposal" and self.draw.random() < 0.7:
             content = {"json": {"slot": LATERAL, "target_counts": self.draw.randint(-3000, -10)}}
-        with suppress(httpx.TransportError):  # the app was killed or frozen meanwhile
+        with living_app(self.client):
             if operation["operationId"] in BEGIN and self.draw.random() < 0.3:
-                for step, settings in READY.items():
-                    self.client.post(f"/api/{step}", json=settings)
+                make_ready(self.client)
             answer = self.client.request(method, target, **content)
             assert answer.status_code != 500, answer.text
             try:
@@ -145,8 +167,7 @@ def disturb(robot: Stack, holder: httpx.Client, draw: random.Random) -> None:
         robot.visitor().post("/api/stop")
     elif what == "unlock":
         robot.control("pedal", pressed=False)
-        for step, settings in READY.items():
-            holder.post(f"/api/{step}", json=settings)
+        make_ready(holder)
         robot.control("pedal", pressed=True)
     elif what == "freeze":
         with frozen(robot.pid("app"), draw.choice(["network", "door", "control"])):
@@ -161,6 +182,8 @@ def disturb(robot: Stack, holder: httpx.Client, draw: random.Random) -> None:
 
 def assert_stopped_for_good(robot: Stack) -> None:
     """Whatever was open, late or on its way: after a STOP the pedal moves nothing."""
+    with living_app(robot.visitor()):
+        robot.visitor().get("/api/session")
     wait_until("it is stopped", lambda: robot.visitor().post("/api/stop").json().get("verdict") == "ACCEPTED")
     robot.control("pedal", pressed=False)
     driven = robot.control("record_event", kind="last_nonzero_drive")["event_tick"]
