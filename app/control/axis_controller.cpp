@@ -22,7 +22,8 @@ DriveMapRules drive_rules(const Axis& axis, double full_speed_counts_per_s) {
       .min_drive = floor_drive(axis.drive),
       .dead_zone_drive = static_cast<double>(axis.drive.dead_zone),
       .full_speed_counts_per_s = full_speed_counts_per_s,
-      .counts_per_revolution = axis.unit == Unit::rad ? 2 * std::numbers::pi * axis.counts_per_unit : 0.0};
+      .counts_per_revolution = axis.unit == Unit::rad ? 2 * std::numbers::pi * axis.counts_per_unit : 0.0,
+      .resonance_hz = axis.drive.resonance_hz};
 }
 
 }  // namespace

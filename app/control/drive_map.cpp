@@ -9,6 +9,7 @@ namespace interlock {
 namespace {
 
 using frequency_map::Wave;
+using frequency_map::wave_of;
 
 constexpr double seconds_per_minute = 60.0;
 constexpr double fastest = 1e9;
@@ -27,11 +28,6 @@ constexpr double most_shift_words = 600.0 * frequency_map::words_per_hz;
 std::uint32_t shifted(double word, double by) noexcept {
   return static_cast<std::uint32_t>(
       std::clamp<double>(word + by, frequency_map::fastest_word, frequency_map::slowest_word));
-}
-
-/** The direction bit of spec/frames.md chooses the column. */
-Wave wave_of(bool motor_direction, bool decreasing) noexcept {
-  return motor_direction == decreasing ? Wave::negative : Wave::positive;
 }
 
 bool has_motor(ilk_card_t card) noexcept {
@@ -103,10 +99,12 @@ void DriveMap::follow(std::uint32_t drive, std::optional<double> counts_per_s, d
   if (expected_rpm < slowest_rpm || rpm < expected_rpm * least_share) {
     return;
   }
-  const double wanted =
-      std::clamp(*driven_words_ - frequency_map::word_for(rpm, wave), -most_shift_words, most_shift_words);
+  const double wanted = std::clamp(*driven_words_ - frequency_map::word_for(rpm, wave),
+                                   stated_words() - most_shift_words, stated_words() + most_shift_words);
   shift_words_ += elapsed_s / (follow_s + elapsed_s) * (wanted - shift_words_);
 }
+
+double DriveMap::stated_words() const noexcept { return rules_.resonance_hz * frequency_map::words_per_hz; }
 
 double DriveMap::full_speed() const noexcept {
   return std::min(speed(rules_.max_drive, 1), -speed(rules_.max_drive, -1));

@@ -10,8 +10,8 @@
  *
  * The resonance of a motor that is driven by frequency moves with its warmth, its load and from one motor to
  * the next, and its whole speed map with it.
- * By how much shows in the frequency at which the published map has the measured speed: the map follows it
- * (`follow`).
+ * It begins where the rules have it. By how much it moved shows in the frequency at which the published map
+ * has the measured speed: the map follows it (`follow`).
  *
  * The three linear cards differ in the word that the kernel builds, not in the drive. A speed other than zero
  * gives at least `min_drive`, so that the axis moves; what is too fast gives `max_drive`: clamped, not masked
@@ -37,6 +37,7 @@ struct DriveMapRules {
                                              integral */
   double full_speed_counts_per_s = 0.0; /**< linear cards: at `max_drive` */
   double counts_per_revolution = 0.0;   /**< HIGH_FREQUENCY: of the motor in the published map */
+  double resonance_hz = 0.0;            /**< HIGH_FREQUENCY: of the motor, above the published map */
 };
 
 /** From a wanted speed to the drive word of a card. */
@@ -61,15 +62,16 @@ class DriveMap {
   [[nodiscard]] double full_speed() const noexcept;
 
  private:
-  explicit DriveMap(const DriveMapRules& rules) noexcept : rules_(rules) {}
+  explicit DriveMap(const DriveMapRules& rules) noexcept : rules_(rules), shift_words_(stated_words()) {}
 
+  [[nodiscard]] double stated_words() const noexcept;
   [[nodiscard]] double frequency_drive(double counts_per_s) const noexcept;
   [[nodiscard]] double frequency_speed(std::uint32_t drive, bool decreasing) const noexcept;
 
   DriveMapRules rules_;
   std::optional<double> driven_words_; /**< frequency word of the drive, as late as the speed is measured */
   double driven_s_ = 0.0;              /**< for so long */
-  double shift_words_ = 0.0;           /**< of the map, from the published one */
+  double shift_words_;                 /**< of the map, from the published one */
 };
 
 }  // namespace interlock

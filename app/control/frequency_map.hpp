@@ -32,6 +32,11 @@ enum class Wave : std::uint8_t {
   negative  /**< direction bit 1 */
 };
 
+/** Of a direction of the axis: the direction bit of spec/frames.md chooses the column. */
+constexpr Wave wave_of(bool motor_direction, bool decreasing) noexcept {
+  return motor_direction == decreasing ? Wave::negative : Wave::positive;
+}
+
 /** Speed at a word in revolutions per minute; that of the nearest point for words outside the map. */
 double rpm_at(std::uint32_t word, Wave wave) noexcept;
 

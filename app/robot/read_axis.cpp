@@ -46,6 +46,10 @@ DriveBounds read_drive(TableReader table, bool has_amplitude) {
   drive.unhomed_max = table.integer<std::uint32_t>("unhomed_max");
   if (has_amplitude) {
     drive.max_amplitude = table.integer<std::uint32_t>("max_amplitude");
+    if (table.has("resonance_hz")) {
+      constexpr double most_hz = 1000.0;
+      drive.resonance_hz = table.number_between("resonance_hz", -most_hz, most_hz);
+    }
   }
   table.refuse_unknown_keys();
   return drive;

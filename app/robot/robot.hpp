@@ -48,6 +48,8 @@ struct DriveBounds {
   std::uint32_t dead_zone = 0; /**< largest drive that does not move the axis */
   std::uint32_t unhomed_max = 0;
   std::uint32_t max_amplitude = 0; /**< wave amplitude; 0 unless the card is high-frequency */
+  double resonance_hz =
+      0.0; /**< of the motor, above the published map; 0 unless the card is high-frequency */
 
   bool operator==(const DriveBounds&) const = default;
 };

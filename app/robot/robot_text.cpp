@@ -75,10 +75,14 @@ tl::expected<std::string, RobotError> with_numbers(std::string_view text, std::s
     const toml::node* const node = table->at_path(number.key).node();
     const toml::node* const before = number.after.empty() ? nullptr : table->at_path(number.after).node();
     if (node == nullptr && before != nullptr) {
-      const std::size_t end = std::min(text.find('\n', offset_of(text, before->source().end)), text.size());
+      const std::size_t dot = number.key.rfind('.');
+      const toml::table* const holder = table->at_path(number.key.substr(0, dot)).as_table();
+      const bool inside = holder != nullptr && holder->is_inline();
+      const std::size_t after = offset_of(text, before->source().end);
+      const std::size_t end = inside ? after : std::min(text.find('\n', after), text.size());
       edits.push_back(
           {end, end,
-           '\n' + number.key.substr(number.key.rfind('.') + 1) + " = " + written(number.value, false)});
+           (inside ? ", " : "\n") + number.key.substr(dot + 1) + " = " + written(number.value, false)});
       continue;
     }
     if (node == nullptr || !node->is_number()) {

@@ -19,8 +19,8 @@ struct AxisNumber {
   std::string key; /**< dotted, from the axis on: "drive.dead_zone"; without an axis, from the file on:
                       "kinematics.home_rcm_mm[2]" */
   double value = 0.0;
-  std::string after = {}; /**< key of the same table behind which a number that is not there yet is written on
-                             a line of its own; empty: it must be there */
+  std::string after = {}; /**< key of the same table behind which a number that is not there yet is written,
+                             on a line of its own unless the table is one line; empty: it must be there */
 };
 
 /**

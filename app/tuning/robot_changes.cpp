@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
+#include "control/frequency_map.hpp"
 #include "robot/compile.hpp"
 #include "robot/robot_file.hpp"
 
@@ -12,10 +14,12 @@ namespace interlock {
 namespace {
 
 constexpr double coast_margin = 1.25;
-/** What differs by less is the same: of full speed, of the largest drive, and of play, in counts. */
+/** What differs by less is the same: of full speed, of the largest drive, of play in counts, of a resonance.
+ */
 constexpr double same_speed = 0.005;
 constexpr double same_drive = 0.002;
 constexpr double same_play = 0.75;
+constexpr double same_resonance_hz = 5.0;
 /** The kernel believes that homing is never slower: loaded and cold it is. */
 constexpr double cold_share = 0.85;
 /** Of full speed, and for the ratio of the directions. */
@@ -46,6 +50,42 @@ double slower_direction(const Identified& found) {
   return least;
 }
 
+/** What a motor that is driven by frequency makes of the published map. */
+struct MovedMap {
+  double resonance_hz = 0.0;
+  double fit_percent = 0.0; /**< standard deviation of the speeds from the map moved there, of full speed */
+};
+
+/** The steeper the map at a speed, the better it shows the resonance. */
+MovedMap moved_map(const Axis& axis, const Identified& found) {
+  const double rpm_of = 60.0 / (2 * std::numbers::pi * axis.counts_per_unit);
+  const auto each = [&](const auto& see) {
+    for (const DriveSpeed& at : found.speeds) {
+      for (const bool decreasing : {false, true}) {
+        const double rpm = rpm_of * (decreasing ? at.down_counts_per_s : at.up_counts_per_s);
+        see(frequency_map::word_of(at.drive), rpm,
+            frequency_map::wave_of(axis.motor_direction != 0, decreasing));
+      }
+    }
+  };
+  double words = 0.0;
+  double weights = 0.0;
+  each([&](double driven, double rpm, frequency_map::Wave wave) {
+    const std::uint32_t word = frequency_map::word_for(rpm, wave);
+    const double slope = frequency_map::rpm_at(word - frequency_map::word_step / 2, wave) -
+                         frequency_map::rpm_at(word + frequency_map::word_step / 2, wave);
+    words += slope * slope * (driven - word);
+    weights += slope * slope;
+  });
+  const double moved = words / weights;
+  double squares = 0.0;
+  each([&](double driven, double rpm, frequency_map::Wave wave) {
+    squares += std::pow(rpm - frequency_map::rpm_at(static_cast<std::uint32_t>(driven - moved), wave), 2);
+  });
+  const double deviation = std::sqrt(squares / (2.0 * static_cast<double>(found.speeds.size())));
+  return {moved / frequency_map::words_per_hz, 100 * deviation / (rpm_of * found.full_speed_counts_per_s)};
+}
+
 void take_mechanics(Axis& axis, const Identified& found, double period_s) {
   Mechanics& mechanics = axis.mechanics;
   const double full = mechanics.full_speed_counts_per_s;
@@ -62,9 +102,14 @@ void take_mechanics(Axis& axis, const Identified& found, double period_s) {
         mechanics.full_speed_counts_per_s * period_s + mechanics.noise_counts + 1);
 }
 
-void take_dead_zone(Axis& axis, const Identified& found) {
+void take_motor(Axis& axis, const Identified& found) {
   const bool is_same = std::abs(found.dead_zone_drive - axis.drive.dead_zone) <= same_drive * axis.drive.max;
-  if (axis.card != ILK_CARD_HIGH_FREQUENCY && !is_same) {
+  if (axis.card == ILK_CARD_HIGH_FREQUENCY) {
+    const double resonance_hz = moved_map(axis, found).resonance_hz;
+    if (std::abs(resonance_hz - axis.drive.resonance_hz) > same_resonance_hz) {
+      axis.drive.resonance_hz = std::round(resonance_hz);
+    }
+  } else if (!is_same) {
     axis = with_dead_zone(axis, found.dead_zone_drive);
   }
 }
@@ -224,7 +269,7 @@ std::vector<NumberChange> changes_of(const Robot& robot, const Axis& axis, const
   const double period_s = robot.period_us * 1e-6;
   Axis is = axis;
   take_mechanics(is, found, period_s);
-  take_dead_zone(is, found);
+  take_motor(is, found);
   if (is.homing) {
     take_homing(is, robot, found, period_s);
   }
@@ -236,6 +281,11 @@ std::vector<NumberChange> changes_of(const Robot& robot, const Axis& axis, const
       changes.push_back({{key, now}, old});
     }
   };
+  constexpr const char* resonance = "drive.resonance_hz";
+  add(resonance, axis.drive.resonance_hz, is.drive.resonance_hz);
+  if (!changes.empty()) {
+    changes.back().number.after = "drive.max_amplitude";
+  }
   for (const Key& key : keys) {
     add(key.name, key.get(axis, period_s * 1000), key.get(is, period_s * 1000));
   }
@@ -280,15 +330,18 @@ nlohmann::ordered_json to_json(const Identified& found) {
 
 tl::expected<void, RobotError> believable(const Robot& robot, const std::string& axis,
                                           const Identified& found) {
-  if (found.fit_percent <= worst_fit_percent) {
+  const Axis& is = *robot.find(axis);
+  const bool by_frequency = is.card == ILK_CARD_HIGH_FREQUENCY;
+  const double fit_percent = by_frequency ? moved_map(is, found).fit_percent : found.fit_percent;
+  if (fit_percent <= worst_fit_percent) {
     return {};
   }
-  return tl::unexpected(RobotError{
-      robot.origin.file, 0, axis,
-      "the measured speeds lie off a straight line over drive by " + std::to_string(found.fit_percent) +
-          " % of full speed",
-      "2 % at most: let the motor cool, or warm, and measure again; a resonance that moves is followed "
-      "without any number in the file"});
+  return tl::unexpected(RobotError{robot.origin.file, 0, axis,
+                                   std::string("the measured speeds lie off ") +
+                                       (by_frequency ? "the published map, moved to the motor's resonance,"
+                                                     : "a straight line over drive") +
+                                       " by " + std::to_string(fit_percent) + " % of full speed",
+                                   "2 % at most: let the motor cool, or warm, and measure again"});
 }
 
 tl::expected<std::string, RobotError> changed_file(const Robot& robot, const std::string& name,

@@ -43,18 +43,19 @@ struct NumberChange {
 nlohmann::ordered_json to_json(const std::vector<NumberChange>& changes);
 
 /**
- * What follows for the file of that axis, and only what differs: dead zone and full speed as measured, with
- * the drives of homing and of an axis that is not homed for the speeds that they were chosen for; rates of
- * planned motion that a slower axis can keep. What the kernel takes for the worst (coast, play, noise,
- * hysteresis, slowest speeds, and the bounds that rest on them) is made safer where it is not safe enough,
- * never the other way: the worst may not have shown itself.
+ * What follows for the file of that axis, and only what differs: dead zone, resonance and full speed as
+ * measured, with the drives of homing and of an axis that is not homed for the speeds that they were chosen
+ * for; rates of planned motion that a slower axis can keep. What the kernel takes for the worst (coast, play,
+ * noise, hysteresis, slowest speeds, and the bounds that rest on them) is made safer where it is not safe
+ * enough, never the other way: the worst may not have shown itself.
  */
 std::vector<NumberChange> changes_of(const Robot& robot, const Axis& axis, const Identified& found);
 
 /**
  * Whether numbers of the file may follow from it. Not when the speeds lie off their line over drive by more
- * than 2 % of full speed: then the motor was another one at the end of the measurement than at its beginning
- * (warm, its resonance elsewhere), or has no straight line, and dead zone and lag mean nothing.
+ * than 2 % of full speed, or off the published map moved to their resonance where that drives the motor: then
+ * the motor was another one at the end of the measurement than at its beginning (warm, its resonance
+ * elsewhere), or has no such line, and dead zone and lag mean nothing.
  */
 tl::expected<void, RobotError> believable(const Robot& robot, const std::string& axis,
                                           const Identified& found);

@@ -26,6 +26,7 @@ Drawn draw(const SteeringWorld& world, std::uint64_t seed) {
       world.curvature_per_mm * (1.0 + noise.between(-world.curvature_error, world.curvature_error));
   drawn.needle.wander_rad = world.wander_rad;
   drawn.needle.bevel_rad = world.bevel_rad + noise.normal(world.bevel_sd_rad);
+  drawn.needle.torsion_play_rad = world.torsion_play_rad;
   drawn.needle.entry_mm = noise.normal_vector(world.entry_sd_mm).head<2>();
   drawn.needle.tilt_rad = noise.normal_vector(world.tilt_sd_rad).head<2>();
   const double shift_mm = noise.between(world.least_shift_mm, world.most_shift_mm);

@@ -32,6 +32,7 @@ struct SteeringWorld {
   double tilt_sd_rad = 0.00873;         /**< normal, about x and y: half a degree */
   double bevel_rad = 0.0;               /**< by which the bevel is off for every needle */
   double bevel_sd_rad = 0.035;          /**< normal: two degrees */
+  double torsion_play_rad = 0.0;        /**< between hub and tip, either way */
   double dragged_share = 0.0;           /**< of the depth, by which the needle pushes the target ahead */
   double wander_rad = 1e-3;             /**< of the way ahead after a millimetre of tissue, normal */
   std::uint32_t force_noise_counts = 3; /**< of the hand's sensor, either way */

@@ -131,6 +131,7 @@ json disturbed(Seeds seeds) {
     world("tip image beside the tip, mm", 2.0).imager.tip_bias_mm = part * 2.0;
     world("target pushed ahead, % of the depth", 6.0).dragged_share = part * 0.06;
     world("bevel off, degrees", 20.0).bevel_rad = part * std::numbers::pi / 9;
+    world("torsion, play in degrees", 20.0).torsion_play_rad = part * std::numbers::pi / 9;
     for (const auto& [name, made] : worlds) {
       json row = tip_errors(made.first, Steering::averaged, seeds);
       row["disturbance"] = name;

@@ -171,6 +171,19 @@ TEST(FrequencyDrive, FollowsTheResonanceOfItsMotor) {
   }
 }
 
+TEST(FrequencyDrive, BeginsAtTheResonanceThatItsFileStates) {
+  for (const double stated_hz : {-300.0, -200.0, 200.0}) {
+    DriveMapRules rules = frequency_rules();
+    rules.resonance_hz = stated_hz;
+    DriveMap map = map_of(rules);
+    EXPECT_NEAR(true_speed(map_of(frequency_rules()), map.drive(1500.0), stated_hz), 1500.0, 15.0)
+        << stated_hz;
+    EXPECT_NEAR(map.speed(map.drive(1500.0), 1), 1500.0, 15.0) << stated_hz;
+    EXPECT_EQ(map.full_speed() > map_of(frequency_rules()).full_speed(), stated_hz > 0) << stated_hz;
+    EXPECT_NEAR(reached(map, 1500.0, stated_hz - 100.0), 1500.0, 15.0) << "and follows it from there";
+  }
+}
+
 TEST(FrequencyDrive, TakesNoAxisThatIsHeldForAnotherResonance) {
   DriveMap map = map_of(frequency_rules());
   const std::uint32_t before = map.drive(1500.0);

@@ -73,6 +73,7 @@ const std::map<std::string, std::vector<std::string>> impossible{
     {"axis.drive.dead_zone", {"-1", "4294967295"}},
     {"axis.drive.unhomed_max", {"0", "4294967295"}},
     {"axis.drive.max_amplitude", {"0", "256"}},
+    {"axis.drive.resonance_hz", {"-1001", "1001"}},
     {"axis.gains.position_per_s", {"-1", "1e7"}},
     {"axis.gains.velocity", {"-1", "1e7"}},
     {"axis.gains.integral_per_s", {"-1", "1e7"}},

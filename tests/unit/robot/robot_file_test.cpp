@@ -103,11 +103,12 @@ TEST(RobotFile, a_high_frequency_axis_has_amplitudes) {
   const auto replace = [&text](std::string_view from, std::string_view to) {
     text.replace(text.find(from), from.size(), to);
   };
-  replace("unhomed_max = 6143", "unhomed_max = 6143, max_amplitude = 200");
+  replace("unhomed_max = 6143", "unhomed_max = 6143, max_amplitude = 200, resonance_hz = -150");
   replace("speed_counts_per_s = 60", "speed_counts_per_s = 60\namplitude = 100");
   const auto robot = parse_robot(text, "piezo.toml");
   ASSERT_TRUE(robot) << robot.error().message();
   EXPECT_EQ(robot->find("yaw")->drive.max_amplitude, 200u);
+  EXPECT_EQ(robot->find("yaw")->drive.resonance_hz, -150.0);
   EXPECT_EQ(robot->find("yaw")->homing->amplitude, 100u);
 }
 

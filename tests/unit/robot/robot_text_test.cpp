@@ -50,6 +50,10 @@ TEST(RobotText, ANumberOfTheWholeFileChangesAndAMissingOneIsWrittenBehindAnother
   expected.replace(expected.rfind("dead_zone = 9"), 13, "dead_zone = 11");
   expected.insert(expected.find("\ndrive"), "\nslot = 3.0");
   EXPECT_EQ(with_numbers(text, "r.toml", "", numbers).value(), expected);
+  const AxisNumber beside{"drive.resonance_hz", -200.0, "drive.max"};
+  expected = text;
+  expected.insert(expected.find(", min = 0, dead_zone = 922"), ", resonance_hz = -200.0");
+  EXPECT_EQ(with_numbers(text, "r.toml", "yaw", {&beside, 1}).value(), expected) << "a table of one line";
   const AxisNumber nowhere{"axis[0].slot", 3.0};
   EXPECT_EQ(with_numbers(text, "r.toml", "", {&nowhere, 1}).error().key, "axis[0].slot");
 }
