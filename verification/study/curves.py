@@ -10,6 +10,7 @@ import os
 import random
 import re
 import subprocess
+import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
@@ -37,6 +38,8 @@ class Point:
     plant: dict[str, float] = field(default_factory=dict)
     axis: dict[str, float] = field(default_factory=dict)
     robot_file: Callable[[str], str] | None = None
+    identified: bool = False
+    """Each axis as `interlock identify` measured it on that plant stands in the robot's file."""
     true_robot: Callable[[str, int], str] | None = None
     arguments: tuple[str, ...] = ()
     seeds: int = 1
@@ -87,15 +90,23 @@ def motor_points(curve: str, robot: str, arguments: tuple[str, ...], seeds: int)
     """What motors and encoders may do."""
     scale = FULL_SPEED[robot] // 1000
 
-    def point(disturbance: str, size: float, **plant: float) -> Point:
-        return Point(curve, robot, disturbance, size, plant, arguments=arguments, seeds=seeds)
+    def point(disturbance: str, size: float, *, identified: bool = False, **plant: float) -> Point:
+        name = disturbance + (", as identified" if identified else "")
+        return Point(
+            curve, robot, name, size, plant, identified=identified, arguments=arguments, seeds=seeds
+        )  # fmt: skip
 
     yield point("none", 0)
     for share in (0.02, 0.05, 0.1, 0.15, 0.25):
         yield point("dead zone, share of full drive (the file says 0.015)", share, dead_zone_fraction=share)
+    for share in (0.02, 0.05, 0.1, 0.15):
+        yield point("dead zone, share of full drive", share, identified=True, dead_zone_fraction=share)
     for share in (0.1, 0.2, 0.3, 0.4, 0.5, 0.6):
         speed = (1 - share) * FULL_SPEED[robot]
         yield point("motor slower than the file, share", share, full_speed_counts_per_s=speed)
+    for share in (0.2, 0.4, 0.5):
+        speed = (1 - share) * FULL_SPEED[robot]
+        yield point("motor slower, share", share, identified=True, full_speed_counts_per_s=speed)
     for share in (0.05, 0.1, 0.2, 0.3, 0.5):
         yield point("load, share of the speed", share, load_fraction=share)
     for share in (0.05, 0.1, 0.2, 0.3, 0.5):
@@ -118,6 +129,10 @@ def resonance_points() -> Iterator[Point]:
         yield Point(
             "rotation", "prostate", "resonance below the published map, Hz", -hz, axis={"resonance_hz": hz}
         )
+    for hz in (-100, -200, -400):
+        name = "resonance below the published map, Hz, as identified"
+        changed = {"resonance_hz": hz}
+        yield Point("rotation", "prostate", name, -hz, axis=changed, identified=True)
     for hz in (50, 100, 200, 400):
         changed = {"resonance_drift_hz": hz, "heat_time_s": 5}
         yield Point("rotation", "prostate", "resonance lost when warm, Hz", hz, axis=changed)
@@ -186,11 +201,22 @@ def runs_of(point: Point, study: Path, folder: Path) -> Iterator[dict | str]:
     plant = with_keys(plant, "[defaults]", point.plant)
     plant = with_keys(plant, "[[axis]]\nslot = 0\n", point.axis)
     command = [str(study), point.robot, "--json", "--random-targets", "0", *point.arguments]
-    command += ["--plant", write(folder, f"{stem}.plant.toml", plant)]
+    measured_on = write(folder, f"{stem}.plant.toml", plant)
+    command += ["--plant", measured_on]
     if point.robot_file:
         changed = point.robot_file(robot)
         assert changed != robot, f"{point.disturbance} changes nothing in {point.robot}.toml"
         command[1] = write(folder, f"{stem}.toml", changed)
+    names = [axis["name"] for axis in tomllib.loads(robot)["axis"]]
+    for axis in names if point.identified else ():
+        written = f"{folder}/{stem}.{axis}.toml"
+        identify = [study.with_name("interlock"), "identify", "--robot", command[1], "--axis", axis]
+        identify += ["--plant", measured_on, "--write", written]
+        done = subprocess.run(identify, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            yield done.stderr.strip().splitlines()[-1]
+            return
+        command[1] = written
     for seed in range(1, point.seeds + 1):
         more = ["--seed", str(seed)]
         if point.true_robot:
