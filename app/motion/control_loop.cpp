@@ -193,14 +193,18 @@ void ControlLoop::obey_pause() noexcept {
   }
 }
 
-/** A signal's age is judged here, in each tick. */
+/** A signal's age is judged here, in each tick. Who holds the pedal waits for a breath: a gate that somebody
+ * turns off meanwhile starts nothing before the next press. */
 void ControlLoop::obey_holds() noexcept {
   const OutsideHolds& holds = channel_.holds.newest();
   const GateState gate = holds.gate.at(view_.moment(view_.received));
   noticed_ = noticed_ || gate != view_.gate || holds.scanning != view_.scanning;
   view_.gate = gate;
   view_.scanning = holds.scanning;
-  modes_.hold({holds.scanning, gate != GateState::off && gate != GateState::open});
+  const bool closed = gate != GateState::off && gate != GateState::open;
+  const bool held = view_.snapshot.state.system.mode == ILK_MODE_MOTION;
+  waits_for_breath_ = closed || (waits_for_breath_ && gate == GateState::off && held);
+  modes_.hold({holds.scanning, waits_for_breath_});
 }
 
 void ControlLoop::read_events() noexcept {

@@ -169,7 +169,8 @@ ProposalState state_of(TaskPhase phase) noexcept {
 std::string detail_of(const Robot& robot, const Proposal& proposal, const TaskStatus& status,
                       const BiopsyFindings& found) {
   if (is_open(status.phase) && status.reason == TaskReason::breathing) {
-    return "Waits under the held pedal for the breathing gate to open; then it goes on by itself.";
+    return "Waits under the held pedal for the breathing gate: goes on by itself when that opens, and at the "
+           "next press when it is turned off.";
   }
   if (is_open(status.phase) && status.reason == TaskReason::scanning) {
     return "Held still for a scan; once that has ended, release the pedal and press it to go on.";

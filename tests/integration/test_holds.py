@@ -11,6 +11,7 @@ from motion import (
     press,
     proposal,
     propose,
+    release,
     restart_app,
     unlock,
     wait_for_mode,
@@ -64,7 +65,7 @@ def insert(robot: Stack) -> int:
 
 
 def waits_for_breath(robot: Stack, number: int) -> bool:
-    return "for the breathing gate to open" in proposal(robot, number)["detail"]
+    return "for the breathing gate" in proposal(robot, number)["detail"]
 
 
 def test_an_insertion_advances_only_while_the_gate_says_open(robot: Stack) -> None:
@@ -95,6 +96,21 @@ def test_an_insertion_advances_only_while_the_gate_says_open(robot: Stack) -> No
         return proposal(robot, number)["state"] == "done"
 
     wait_until("it goes on by itself", is_done)
+
+
+def test_a_closed_gate_that_is_turned_off_under_the_held_pedal_waits_for_a_new_press(robot: Stack) -> None:
+    put(robot, "gate", in_use=True)
+    begin = depth(robot)
+    number = insert(robot)
+    wait_until("it waits", lambda: waits_for_breath(robot, number))
+    assert put(robot, "gate", in_use=False)["gate"]["state"] == "off"
+    wait_for_ticks(robot, 500)
+    assert depth(robot) == begin
+    assert "at the next press" in proposal(robot, number)["detail"]
+    release(robot)
+    press(robot)
+    wait_for_proposal(robot, number, "done")
+    assert depth(robot) > begin
 
 
 def test_the_end_of_its_source_closes_the_gate_and_only_who_is_in_control_turns_it_off(robot: Stack) -> None:

@@ -36,6 +36,7 @@ AT_MOST = {
     "flagged_share": 0.01,
     "tip image beside the tip, mm 2_rms_mm": 2.8,
     "bevel off, degrees 20_rms_mm": 1.3,
+    "torsion, play in degrees 20_rms_mm": 0.9,
 }
 AT_LEAST = {
     "membrane_hit_share": 0.95,

@@ -175,6 +175,26 @@ TEST_F(ControlLoopTest, ASignalOfTheBreathingGateGrowsOldOnTheControlThreadAndCo
   EXPECT_EQ(::poll(&wake, 1, 0), 1);
 }
 
+TEST_F(ControlLoopTest, ABreathingGateThatIsTurnedOffWhileItHoldsLetsNothingGoOnBeforeTheNextPress) {
+  approve(1, MoveTask{test::insertion, 1500});
+  channel_->holds.writing() = {};
+  channel_->holds.writing().gate.in_use = true;
+  channel_->holds.publish();
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
+  tick();
+  EXPECT_EQ(move().reason, TaskReason::breathing);
+  channel_->holds.writing() = {};
+  channel_->holds.publish();
+  tick(100);
+  EXPECT_EQ(channel_->view.newest().gate, GateState::off);
+  EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
+  snapshot_.state.system.mode = ILK_MODE_READY;
+  tick();
+  snapshot_.state.system.mode = ILK_MODE_MOTION;
+  tick(2);
+  EXPECT_EQ(move().phase, TaskPhase::executing);
+}
+
 TEST_F(ControlLoopTest, AScanEndsMotionInTheSameTickForAsLongAsItLasts) {
   approve(1, MoveTask{test::insertion, 1500});
   snapshot_.state.system.mode = ILK_MODE_MOTION;
