@@ -12,7 +12,7 @@ namespace {
 constexpr double steepest = 1.5;
 constexpr double sharpest = 6.0;
 constexpr double weightiest = 0.991;
-constexpr double tick_s = 1e-3;
+constexpr double rounding = 1.0 + 1e-4;
 
 double pace_of(double share) noexcept { return share * share * (3.0 - 2.0 * share); }
 
@@ -49,9 +49,12 @@ double TimeScaling::change_s(const RateLimits& top, const RateLimits& limits, do
   return std::max(steepest * velocity / acceleration_left, by_jerk);
 }
 
-bool TimeScaling::is_rest(const MotionState& state, const RateLimits& limits) noexcept {
-  return std::abs(state.velocity) <= limits.acceleration * tick_s &&
-         std::abs(state.acceleration) <= limits.jerk * tick_s;
+bool TimeScaling::is_rest(const MotionState& there, const MotionState& tick_away,
+                          const RateLimits& limits) noexcept {
+  const double velocity = std::max(std::abs(there.velocity), std::abs(tick_away.velocity));
+  const double acceleration = std::max(std::abs(there.acceleration), std::abs(tick_away.acceleration));
+  return velocity <= limits.acceleration * tick_s * rounding &&
+         acceleration <= limits.jerk * tick_s * rounding;
 }
 
 double TimeScaling::passed_s(double time_s) const noexcept {

@@ -39,8 +39,12 @@ class TimeScaling {
    */
   static double change_s(const RateLimits& top, const RateLimits& limits, double pace) noexcept;
 
-  /** Whether an axis may leap between that state and rest: by what its limits make up in a tick. */
-  static bool is_rest(const MotionState& state, const RateLimits& limits) noexcept;
+  static constexpr double tick_s = 1e-3;
+
+  /** Whether an axis may leap between rest and an end of a trajectory: by what its limits make up in
+   * a tick, there and a tick into the trajectory, where a walk has its first point and its last. */
+  static bool is_rest(const MotionState& there, const MotionState& tick_away,
+                      const RateLimits& limits) noexcept;
 
   /** Until the whole way has passed. */
   [[nodiscard]] double duration_s() const noexcept { return rise_s_ + cruise_s_ + fall_s_; }
@@ -72,8 +76,10 @@ TimeScaling pace_along(const TimedTrajectory& trajectory, double from_s, const L
   bool falls = false;
   for (std::size_t axis = 0; axis < axes.size(); ++axis) {
     const RateLimits limits = limits_of(axes[axis].slot);
-    rises = rises || !TimeScaling::is_rest(trajectory.at(axis, from_s), limits);
-    falls = falls || !TimeScaling::is_rest(trajectory.end(axis), limits);
+    const double begun_s = std::min(from_s + TimeScaling::tick_s, trajectory.end_s());
+    const double ending_s = std::max(trajectory.end_s() - TimeScaling::tick_s, from_s);
+    rises = rises || !TimeScaling::is_rest(trajectory.at(axis, from_s), trajectory.at(axis, begun_s), limits);
+    falls = falls || !TimeScaling::is_rest(trajectory.end(axis), trajectory.at(axis, ending_s), limits);
   }
   TimeScaling shortest(way_s, 1.0, 0.0, 0.0);
   if (!rises && !falls) {

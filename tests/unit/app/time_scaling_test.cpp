@@ -98,6 +98,20 @@ TEST(TimeScaling, NothingIsLeftForAChangeWhereTheTrajectoryTakesAllOfALimit) {
   EXPECT_LT(TimeScaling::change_s(limits, limits, 0.95), 5.0);
 }
 
+/** Of 100,000 random paths one was taken up so, and its first tick gained more than the limit. */
+TEST(TimeScaling, AStateFromWhichTheFirstTickGainsMoreThanTheLimitsIsNoRest) {
+  const RateLimits limits{600.0, 6000.0, 120000.0};
+  const auto is_rest = [&](double velocity, double acceleration) {
+    return TimeScaling::is_rest({0.0, velocity, acceleration},
+                                {0.0, velocity + acceleration * TimeScaling::tick_s, acceleration}, limits);
+  };
+  EXPECT_TRUE(is_rest(-5.95, 0.0));
+  EXPECT_TRUE(is_rest(0.0, 120.0));
+  EXPECT_FALSE(is_rest(-5.95, -101.0));
+  EXPECT_FALSE(is_rest(6.05, -101.0)) << "the state itself is none";
+  EXPECT_FALSE(TimeScaling::is_rest({0.0, 0.0, 100.0}, {0.0, 0.1, 130.0}, limits));
+}
+
 TEST(TimeScaling, EndsAtRest) {
   const TimeScaling pace(2.0, 1.0, 0.1, 0.2);
   EXPECT_DOUBLE_EQ(pace.duration_s(), 2.15);
