@@ -15,15 +15,14 @@ constexpr std::uint32_t most_elapsed_ticks = 10;
 constexpr std::uint32_t fewest_periods = 4;
 
 DriveMapRules drive_rules(const Axis& axis, double full_speed_counts_per_s) {
-  return {
-      .card = axis.card,
-      .motor_direction = axis.motor_direction != 0,
-      .max_drive = axis.drive.max,
-      .min_drive = floor_drive(axis.drive),
-      .dead_zone_drive = static_cast<double>(axis.drive.dead_zone),
-      .full_speed_counts_per_s = full_speed_counts_per_s,
-      .counts_per_revolution = axis.unit == Unit::rad ? 2 * std::numbers::pi * axis.counts_per_unit : 0.0,
-      .resonance_hz = axis.drive.resonance_hz};
+  return {.card = axis.card,
+          .motor_direction = axis.motor_direction != 0,
+          .max_drive = axis.drive.max,
+          .min_drive = floor_drive(axis.drive),
+          .dead_zone_drive = static_cast<double>(axis.drive.dead_zone),
+          .full_speed_counts_per_s = full_speed_counts_per_s,
+          .counts_per_revolution = axis.unit == Unit::rad ? 2 * std::numbers::pi * axis.counts_per_unit : 0.0,
+          .resonance_hz = axis.drive.resonance_hz};
 }
 
 }  // namespace
