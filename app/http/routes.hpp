@@ -356,7 +356,7 @@ class RunRoutes {
 
  private:
   boost::asio::awaitable<Reply> list(const Call& call) const;
-  boost::asio::awaitable<Reply> samples(const Call& call) const;
+  boost::asio::awaitable<Reply> csv(const Call& call) const;
   boost::asio::awaitable<Reply> annotate(const Call& call) const;
   boost::asio::awaitable<Reply> retain(const Call& call) const;
 

@@ -55,7 +55,8 @@ RunRoutes::RunRoutes(const Context& context, Router& router) : context_(context)
   router.add(verb::get, "/api/runs/{id}", viewers,
              [this](const Call& call) { return run_reply(show_run(context_, run_in(call))); });
   router.add(verb::get, "/api/runs/{id}/samples", viewers,
-             [this](const Call& call) { return samples(call); });
+             [this](const Call& call) { return run_reply(samples_of_run(context_, run_in(call))); });
+  router.add(verb::get, "/api/runs/{id}/csv", viewers, [this](const Call& call) { return csv(call); });
   router.add(verb::put, "/api/runs/{id}/note", engineers,
              [this](const Call& call) { return annotate(call); });
 }
@@ -68,33 +69,19 @@ Answering RunRoutes::list(const Call& call) const {
   co_return co_await run_reply(list_runs(context_, std::move(*filter)));
 }
 
-Answering RunRoutes::samples(const Call& call) const {
-  const auto query = known_query(call.request, {"format"});
-  if (!query) {
-    co_return fail(query.error());
-  }
-  Fields fields(*query, {"format"});
-  constexpr std::array<std::string_view, 2> formats{"json", "csv"};
-  const std::string format = fields.choice("format", formats).value_or("json");
-  if (fields.problem()) {
-    co_return fail(*fields.problem());
-  }
-  auto samples = co_await samples_of_run(context_, run_in(call));
-  if (!samples || format == "json") {
-    co_return std::move(samples).map([](json body) { return Success{.body = std::move(body)}; });
-  }
+Answering RunRoutes::csv(const Call& call) const {
   auto run = co_await show_run(context_, run_in(call));
   if (!run) {
     co_return fail(run.error());
   }
+  auto samples = co_await samples_of_run(context_, run_in(call));
+  if (!samples) {
+    co_return fail(samples.error());
+  }
   auto write = [run = std::move(*run), samples = std::move(*samples)] { return samples_csv(run, samples); };
   auto text = co_await context_.work.run(std::move(write));
-  co_return std::move(text).map([&](std::string csv) {
-    return Success{.body = std::move(csv),
-                   .headers = {{"Content-Disposition",
-                                "attachment; filename=\"run-" + std::to_string(run_in(call)) + ".csv\""}},
-                   .text_type = "text/csv; charset=utf-8"};
-  });
+  co_return std::move(text).map(
+      [](std::string table) { return Success{.body = std::move(table), .text_type = "text/csv"}; });
 }
 
 Answering RunRoutes::annotate(const Call& call) const {
