@@ -34,13 +34,13 @@ struct KeptRun {
 
 /** Which runs are asked for; what is left out does not matter. */
 struct RunFilter {
-  std::optional<std::int64_t> case_number;
-  std::optional<std::string> outcome;
-  std::optional<std::string> kind;
-  std::optional<std::string> axis;    /**< one that it moved */
-  std::optional<UtcTime> since;       /**< begun then or later */
-  std::optional<std::int64_t> before; /**< number below this one */
-  std::size_t count = 0;              /**< at most so many */
+  std::optional<std::int64_t> case_number = {};
+  std::optional<std::string> outcome = {};
+  std::optional<std::string> kind = {};
+  std::optional<std::string> axis = {};    /**< one that it moved */
+  std::optional<UtcTime> since = {};       /**< begun then or later */
+  std::optional<std::int64_t> before = {}; /**< number below this one */
+  std::size_t count = 0;                   /**< at most so many */
 };
 
 /** How many runs stay. */
