@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
@@ -41,6 +42,7 @@
 #include "store/audit.hpp"
 #include "store/first_admin.hpp"
 #include "store/noted_heads.hpp"
+#include "store/runs.hpp"
 #include "store/settings.hpp"
 #include "store/store.hpp"
 #include "store/store_backup.hpp"
@@ -207,6 +209,10 @@ Stored<void> record_start(Store& store, const Model& model) {
                           {"commit", commit()},
                           {"robot", model.robot.name},
                           {"config_crc", config_hash(model.config)}};
+    const auto interrupted = Runs(transaction).interrupt("The app ended while it went on.");
+    if (!interrupted.empty()) {
+      detail["interrupted_runs"] = interrupted;
+    }
     Audit(transaction)
         .append({std::chrono::system_clock::now(), std::nullopt, audit_actor::app, std::nullopt,
                  AuditKind::start, std::move(detail)});
@@ -282,9 +288,11 @@ Stored<AuditHead> read_head(Store& store) {
   return store.read([](Transaction& transaction) -> Stored<AuditHead> { return Audit(transaction).head(); });
 }
 
+/** No proposal of an earlier run of the app has a number beyond it: each is preceded by a record of its own.
+ * Records can be retired, so the runs count as well. */
 Stored<std::int64_t> read_newest_proposal(Store& store) {
   return store.read([](Transaction& transaction) -> Stored<std::int64_t> {
-    return Audit(transaction).newest_of(AuditKind::proposal);
+    return std::max(Audit(transaction).newest_of(AuditKind::proposal), Runs(transaction).newest());
   });
 }
 
@@ -343,8 +351,6 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
                {&history, options.black_box});
   api.compare_with(options.audit_heads);
   if (const auto newest = read_newest_proposal(store)) {
-    // Each proposal is preceded by a record of its own, so none of an earlier run has a number beyond the
-    // last.
     api.registry().number_after(static_cast<std::uint32_t>(*newest));
   }
   if (const auto kept = read_holds(store); kept && *kept && !options.replay) {

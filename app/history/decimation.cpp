@@ -82,8 +82,13 @@ void Decimation::add_axis(std::uint32_t slot, const ilk_snapshot_t& snapshot) no
   if (requested) {
     extremes.setpoint_counts.add(axis.setpoint_counts);
   }
+  extremes.last_position_counts = read ? std::optional(axis.position_counts) : std::nullopt;
+  extremes.last_setpoint_counts = requested ? std::optional(axis.setpoint_counts) : std::nullopt;
   if (read && requested) {
-    extremes.error_counts.add(error_of(axis));
+    const std::int32_t error = error_of(axis);
+    extremes.error_counts.add(error);
+    extremes.error_squares += static_cast<double>(error) * error;
+    ++extremes.error_ticks;
   }
   extremes.drive.add(signed_drive(snapshot.command[slot]));
 }

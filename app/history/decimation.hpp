@@ -40,11 +40,15 @@ class Extremes {
 
 /** Of one axis: of those ticks that have the quantity. */
 struct AxisExtremes {
-  Extremes<std::int32_t> position_counts; /**< of valid frames */
-  Extremes<std::int32_t> setpoint_counts; /**< while MOVING */
-  Extremes<std::int32_t> error_counts;    /**< setpoint less position, where both are there */
-  Extremes<float> velocity_counts_per_s;  /**< of the last 20 ms, by the card's clock */
-  Extremes<std::int32_t> drive;           /**< that left the kernel's gate; negative: decreasing */
+  Extremes<std::int32_t> position_counts;           /**< of valid frames */
+  Extremes<std::int32_t> setpoint_counts;           /**< while MOVING */
+  Extremes<std::int32_t> error_counts;              /**< setpoint less position, where both are there */
+  Extremes<float> velocity_counts_per_s;            /**< of the last 20 ms, by the card's clock */
+  Extremes<std::int32_t> drive;                     /**< that left the kernel's gate; negative: decreasing */
+  std::optional<std::int32_t> last_position_counts; /**< as `position_counts`, in the newest tick */
+  std::optional<std::int32_t> last_setpoint_counts; /**< as `setpoint_counts`, in the newest tick */
+  double error_squares = 0.0;                       /**< sum of the squares of `error_counts` */
+  std::uint32_t error_ticks = 0;                    /**< that have an error */
 };
 
 /** Some ticks in a row, as far as they were seen. */

@@ -101,6 +101,7 @@ void Api::follow_proposals() {
     message["type"] = "proposal";
     stream_.send_text(message);
     navigation_.tell(proposal);
+    runs_.follow(proposal);
     const PathTask* path = proposal.work<PathTask>();
     if (proposal.state == ProposalState::done && path != nullptr && path->program == trajectory_.program) {
       trajectory_ = {};
@@ -356,8 +357,9 @@ asio::awaitable<void> Api::broadcast() {
       co_return;
     }
     control_.say_served();
-    history_routes_.keep();
+    history_routes_.keep(runs_);
     const ControlView& seen = context_.view();
+    runs_.check();
     if (!stream_.empty()) {
       stream_.send_state(
           encode_state(seen, context_.config, open_targets(context_.robot, registry_), steady_clock::now()));

@@ -16,6 +16,7 @@
 #include "service/declared_positions.hpp"
 #include "service/navigation.hpp"
 #include "service/registration_watch.hpp"
+#include "service/run_recorder.hpp"
 
 namespace interlock::web {
 
@@ -64,6 +65,9 @@ class Api {
 
   /** The proposals. */
   [[nodiscard]] MotionRegistry& registry() { return registry_; }
+
+  /** The motions that are kept. */
+  [[nodiscard]] RunRecorder& runs() { return runs_; }
 
   /** The navigation programs; they come once its server listens and it was started. */
   [[nodiscard]] Navigation& navigation() { return navigation_; }
@@ -115,6 +119,7 @@ class Api {
   StopRecords stops_;
   std::uint64_t role_refusals_ = 0;
   Context context_;
+  RunRecorder runs_{context_};
   Navigation navigation_;
   RegistrationWatch registration_watch_;
   Router router_;
@@ -134,6 +139,7 @@ class Api {
   LogRoutes log_routes_{context_, router_};
   HistoryRoutes history_routes_;
   CaseRoutes case_routes_{context_, router_};
+  RunRoutes run_routes_{context_, router_};
   TargetingRoutes targeting_routes_{context_, router_};
   TrajectoryRoutes trajectory_routes_{context_, router_};
   CommunicationRoutes communication_routes_{context_, navigation_, stream_, router_};

@@ -19,6 +19,7 @@
 #include "service/drafts.hpp"
 #include "service/login_guard.hpp"
 #include "service/navigation.hpp"
+#include "service/run_recorder.hpp"
 #include "service/targeting_store.hpp"
 #include "store/sessions.hpp"
 
@@ -149,8 +150,8 @@ class HistoryRoutes {
   /** Context and router must outlive it. */
   HistoryRoutes(const Context& context, Past past, Router& router);
 
-  /** Takes over what was decimated since the last call; at least once a second. */
-  void keep();
+  /** Takes over what was decimated since the last call, and shows it to the runs; at least once a second. */
+  void keep(RunRecorder& runs);
 
  private:
   [[nodiscard]] Reply history(const Call& call) const;
@@ -343,6 +344,21 @@ class CaseRoutes {
  private:
   boost::asio::awaitable<Reply> open(const Call& call) const;
   boost::asio::awaitable<Reply> add_note(const Call& call) const;
+
+  const Context& context_;
+};
+
+/** Routes of the runs. */
+class RunRoutes {
+ public:
+  /** Both must outlive it. */
+  RunRoutes(const Context& context, Router& router);
+
+ private:
+  boost::asio::awaitable<Reply> list(const Call& call) const;
+  boost::asio::awaitable<Reply> csv(const Call& call) const;
+  boost::asio::awaitable<Reply> annotate(const Call& call) const;
+  boost::asio::awaitable<Reply> retain(const Call& call) const;
 
   const Context& context_;
 };

@@ -72,30 +72,14 @@ Stored<json> listed(const KeptCase& kept, const Look& look) {
   });
 }
 
-/** Names of the black box' recordings that were finished while the case was not closed, or just afterwards: a
- * recording goes on for two seconds after what it is about. */
+/** Of the time until it was closed. */
 json recordings_of(const KeptCase& kept, const fs::path& folder) {
-  constexpr std::chrono::seconds afterwards{5};
   const auto time_of = [&](const char* step) {
     return kept.value.value(step, json::object()).value("time", "");
   };
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator each(folder, error); !error && each != fs::directory_iterator();
-       each.increment(error)) {
-    std::error_code gone;
-    const auto written = fs::last_write_time(each->path(), gone);
-    const auto time =
-        std::chrono::time_point_cast<UtcTime::duration>(std::chrono::file_clock::to_sys(written));
-    const bool is_within =
-        iso_8601(time) >= time_of("opened") &&
-        (kept.state != CaseState::closed || iso_8601(time - afterwards) <= time_of("changed"));
-    if (!gone && each->path().extension() == ".ilkr" && is_within) {
-      names.push_back(each->path().filename());
-    }
-  }
-  std::ranges::sort(names);
-  return names;
+  return recordings_between(
+      folder, time_of("opened"),
+      kept.state == CaseState::closed ? std::optional<std::string>(time_of("changed")) : std::nullopt);
 }
 
 Problem no_such_case(std::int64_t number) {
@@ -301,6 +285,27 @@ CaseAnswer take_out_of_force(const Context& context, Taking ending) {
 }
 
 }  // namespace
+
+json recordings_between(const fs::path& folder, const std::string& from,
+                        const std::optional<std::string>& until) {
+  // A recording goes on for two seconds after what it is about.
+  constexpr std::chrono::seconds afterwards{5};
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator each(folder, error); !error && each != fs::directory_iterator();
+       each.increment(error)) {
+    std::error_code gone;
+    const auto written = fs::last_write_time(each->path(), gone);
+    const auto time =
+        std::chrono::time_point_cast<UtcTime::duration>(std::chrono::file_clock::to_sys(written));
+    const bool is_within = iso_8601(time) >= from && (!until || iso_8601(time - afterwards) <= *until);
+    if (!gone && each->path().extension() == ".ilkr" && is_within) {
+      names.push_back(each->path().filename());
+    }
+  }
+  std::ranges::sort(names);
+  return names;
+}
 
 void put_in_force(const Context& context, std::int64_t number, const std::string& by) {
   if (std::exchange(context.in_force.open_case, number) != 0) {

@@ -11,7 +11,9 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "service/context.hpp"
@@ -21,6 +23,11 @@ namespace interlock {
 
 /** What the case was, or the problem. */
 using CaseAnswer = boost::asio::awaitable<tl::expected<nlohmann::json, Problem>>;
+
+/** Names of the black box' recordings in the folder that were finished between those times, as `iso_8601`
+ * writes them, or just afterwards; without an end: until now. */
+nlohmann::json recordings_between(const std::filesystem::path& folder, const std::string& from,
+                                  const std::optional<std::string>& until);
 
 /** Schema `Case`, of the newest 200. */
 CaseAnswer list_cases(const Context& context);

@@ -88,7 +88,8 @@ void Cases::change(const KeptCase& changed) {
 
 void Cases::remove(std::int64_t number) {
   for (const char* const statement :
-       {"DELETE FROM case_changes WHERE case_number = ?", "DELETE FROM cases WHERE number = ?"}) {
+       {"DELETE FROM case_changes WHERE case_number = ?", "UPDATE runs SET note = '' WHERE case_number = ?",
+        "DELETE FROM cases WHERE number = ?"}) {
     SQLite::Statement remove(database_, statement);
     remove.bind(1, number);
     remove.exec();

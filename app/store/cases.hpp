@@ -51,7 +51,7 @@ class Cases {
   /** Keeps state and value of the case with that number. */
   void change(const KeptCase& changed);
 
-  /** Removes a case with what was noted for it. */
+  /** Removes a case with what was noted for it and for its runs, which stay. */
   void remove(std::int64_t number);
 
   /** Notes a change of its values, which that record of the audit describes. */

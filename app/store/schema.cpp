@@ -155,7 +155,22 @@ UPDATE cases SET value = json_remove(value, '$.targeting.registrations_before');
 DELETE FROM settings WHERE key = 'registrations_before';
 )sql";
 
-constexpr std::array scripts_of_all_versions{version_1, version_2, version_3, version_4};
+/** Every motion, by the number of its proposal. */
+constexpr const char* version_5 = R"sql(
+CREATE TABLE runs (
+  number INTEGER PRIMARY KEY,
+  case_number INTEGER NOT NULL,
+  kind TEXT NOT NULL,
+  axes TEXT NOT NULL,
+  outcome TEXT NOT NULL,
+  begun TEXT NOT NULL,
+  note TEXT NOT NULL DEFAULT '',
+  value TEXT NOT NULL,
+  samples BLOB NOT NULL
+) STRICT;
+)sql";
+
+constexpr std::array scripts_of_all_versions{version_1, version_2, version_3, version_4, version_5};
 
 int pragma(SQLite::Database& database, const char* name) {
   return database.execAndGet(std::string("PRAGMA ") + name).getInt();

@@ -59,9 +59,12 @@ HistoryRoutes::HistoryRoutes(const Context& context, Past past, Router& router)
   router.add(verb::get, "/api/capture", viewers, [this](const Call& call) { return capture(call); });
 }
 
-void HistoryRoutes::keep() {
+void HistoryRoutes::keep(RunRecorder& runs) {
   if (past_.feed != nullptr) {
-    past_.feed->take([this](const TickBucket& bucket) { history_.add(bucket); });
+    past_.feed->take([&](const TickBucket& bucket) {
+      history_.add(bucket);
+      runs.add(bucket);
+    });
   }
 }
 

@@ -682,6 +682,119 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/runs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The runs that are kept, newest first. A run is a motion that was carried out; it has the number of its proposal. */
+        get: operations["listRuns"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/runs/retention": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /** Says how many runs stay. Those beyond are removed at once, and with each run that is kept. */
+        put: operations["setRunRetention"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/runs/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        /** One run. */
+        get: operations["getRun"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/runs/{id}/samples": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        /** The plan of a run, and where its axes were asked to be and were, in time. */
+        get: operations["getRunSamples"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/runs/{id}/csv": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        /**
+         * The samples of a run for other programs: a header, then a row for each sample with `time_s` and, of each axis, the planned (empty
+         *     where no time was planned), commanded and actual position in mm or degrees: `yaw_actual_deg`.
+         */
+        get: operations["exportRun"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/runs/{id}/note": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        get?: never;
+        /** Puts a note in the place of the one before. It goes when the case of the run is deleted. */
+        put: operations["setRunNote"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/targeting": {
         parameters: {
             query?: never;
@@ -1834,6 +1947,125 @@ export interface components {
             /** @description Why it is in this state, for people. */
             detail: string;
         };
+        /** @description What stays of the runs. One that goes on is never removed. */
+        RunRetention: {
+            /** @description The newest. */
+            count: number;
+            /** @description And of them only those that began so many days ago or later, by the clock. */
+            days: number;
+            /** @description So many of the newest stay, whatever their age. */
+            always: number;
+        };
+        NewRunRetention: {
+            count: number;
+            days: number;
+        };
+        NewRunNote: {
+            /** @description One line, without patient data; empty: none. */
+            text: string;
+        };
+        RunList: {
+            runs: components["schemas"]["ListedRun"][];
+            /** @description There are older ones that the filter lets through. */
+            more: boolean;
+            retention: components["schemas"]["RunRetention"];
+        };
+        ListedRun: {
+            /** @description Number of its proposal. */
+            id: number;
+            case: components["schemas"]["Proposal"]["case"];
+            kind: components["schemas"]["Proposal"]["kind"];
+            /** @description As in /api/mode. */
+            mode: string;
+            author: string;
+            source: components["schemas"]["Proposal"]["source"];
+            aim: components["schemas"]["Proposal"]["aim"];
+            /**
+             * @description Last state of its proposal; running: it goes on, or is paused; interrupted: the app ended while it went on.
+             * @enum {string}
+             */
+            outcome: "running" | "done" | "refused" | "aborted" | "expired" | "interrupted";
+            /** @description Why, for people. */
+            detail: string;
+            /** @description Verdict that ended it. */
+            verdict: string | null;
+            /**
+             * Format: date-time
+             * @description When the app saw it move.
+             */
+            begun: string;
+            /** @description Of the kernel. */
+            begun_tick: number;
+            /**
+             * Format: date-time
+             * @description Null of one that goes on or was interrupted.
+             */
+            ended: string | null;
+            /** @description Null as well when the kernel ended before it. */
+            ended_tick: number | null;
+            /** @description With its pauses; by ticks, or by the clock where the kernel ended before it. */
+            duration_s: number | null;
+            /**
+             * Format: date-time
+             * @description Up to when it was followed.
+             */
+            kept: string;
+            note: string;
+            robot: string;
+            /** @description As of a case. */
+            configuration: string;
+            axes: components["schemas"]["RunAxis"][];
+        };
+        Run: components["schemas"]["ListedRun"] & {
+            /** @description Names of the recordings of the black box that were finished while it went on, or just afterwards, as far as they are kept on this machine. */
+            recordings: string[];
+        };
+        /** @description What became of one axis. Positions are null where they were not known. */
+        RunAxis: {
+            slot: number;
+            axis: string;
+            title: string;
+            /** @enum {string} */
+            unit: "mm" | "rad";
+            /** @description As the robot's file had it then. */
+            counts_per_unit: number;
+            begin_counts: number | null;
+            /** @description Null of homing, a jog, a sweep, a biopsy and an identification. */
+            target_counts: number | null;
+            /** @description Half a second after its end, or when its axis moved on. */
+            end_counts: number | null;
+            /** @description Largest following error (commanded less actual position, without sign) of all ticks that the app saw; null unless the motion was planned in time. */
+            largest_error_counts: number | null;
+            /** @description As `largest_error_counts`: root of the mean square. */
+            rms_error_counts: number | null;
+        };
+        /** @description At most 2000 samples, each of one tick. They are evenly spaced while the app sees every tick. */
+        RunSamples: {
+            id: number;
+            /** @description Since its begin. */
+            times_s: number[];
+            /** @description Steps of 33 ms from one sample to the next: 1, and doubled whenever there were 2000. */
+            buckets_of_sample: number;
+            /** @description In the order of the run's axes. */
+            axes: {
+                slot: number;
+                /** @description Null while the axis does not move. */
+                commanded_counts: (number | null)[];
+                /** @description Null where the card gave no valid frame. */
+                actual_counts: (number | null)[];
+            }[];
+            /** @description As of /api/proposals/{id}/plan when it began. Pauses are not in it. */
+            plan: {
+                /** @enum {string} */
+                basis: "none" | "time" | "way";
+                why: string | null;
+                times_s: number[];
+                axes: {
+                    slot: number;
+                    positions_counts: number[];
+                }[];
+            };
+        };
         /** @description What the mechanics of an axis do. Speeds come as they are measured; the other figures are 0 until it is done, but for noise and coast. */
         MeasuredAxis: {
             /** @description As `interlock identify` says it; null here, since a running robot has homed before. */
@@ -2929,6 +3161,7 @@ export interface components {
         /** @description Slot or name of the axis. */
         Axis: string;
         CaseNumber: number;
+        RunId: number;
         ProposalId: number;
     };
     requestBodies: never;
@@ -4160,6 +4393,180 @@ export interface operations {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
             };
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    listRuns: {
+        parameters: {
+            query?: {
+                /** @description Only of that case; 0: of none. */
+                case?: number;
+                /** @description Only with that outcome. */
+                outcome?: string;
+                /** @description Only motions of that kind. */
+                kind?: string;
+                /** @description Only those that moved the axis of that name. */
+                axis?: string;
+                /** @description Only those that began then or later. */
+                since?: string;
+                /** @description Only runs before this number. */
+                before?: number;
+                count?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Runs. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunList"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    setRunRetention: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewRunRetention"];
+            };
+        };
+        responses: {
+            /** @description What stays. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunRetention"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    getRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description The run. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Run"];
+                };
+            };
+            401: components["responses"]["Login"];
+            404: components["responses"]["NotFound"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    getRunSamples: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Samples. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunSamples"];
+                };
+            };
+            401: components["responses"]["Login"];
+            404: components["responses"]["NotFound"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    exportRun: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Samples. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "text/csv": string;
+                };
+            };
+            401: components["responses"]["Login"];
+            404: components["responses"]["NotFound"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    setRunNote: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: components["parameters"]["RunId"];
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewRunNote"];
+            };
+        };
+        responses: {
+            /** @description The run. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Run"];
+                };
+            };
+            400: components["responses"]["Malformed"];
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };
