@@ -193,8 +193,9 @@ void ControlLoop::obey_pause() noexcept {
   }
 }
 
-/** A signal's age is judged here, in each tick. Who holds the pedal waits for a breath: a gate that somebody
- * turns off meanwhile starts nothing before the next press. */
+/** A signal's age is judged here, in each tick. Who holds the pedal waits for a breath: once somebody has
+ * turned the gate off meanwhile, nothing starts before the next press, even if it is turned on again and
+ * opens. */
 void ControlLoop::obey_holds() noexcept {
   const OutsideHolds& holds = channel_.holds.newest();
   const GateState gate = holds.gate.at(view_.moment(view_.received));
@@ -203,8 +204,10 @@ void ControlLoop::obey_holds() noexcept {
   view_.scanning = holds.scanning;
   const bool closed = gate != GateState::off && gate != GateState::open;
   const bool held = view_.snapshot.state.system.mode == ILK_MODE_MOTION;
-  waits_for_breath_ = closed || (waits_for_breath_ && gate == GateState::off && held);
-  modes_.hold({holds.scanning, waits_for_breath_});
+  still_.needs_press = held && (still_.needs_press || (still_.insertion && gate == GateState::off));
+  still_.insertion = closed || still_.needs_press;
+  still_.all = holds.scanning;
+  modes_.hold(still_);
 }
 
 void ControlLoop::read_events() noexcept {

@@ -114,7 +114,7 @@ class ControlLoop {
   std::uint32_t events_dropped_ = 0;            /**< of which the network was not told yet */
   bool heartbeat_sent_ = false;
   bool noticed_ = false;
-  bool waits_for_breath_ = false; /**< the insertion, as far as the gate has it */
+  StandStill still_;
   bool nobody_served_ = false;
   std::atomic<std::uint32_t> rounds_ = 0;
 };

@@ -117,6 +117,8 @@ void ModeManager::report(ControlView& view) const noexcept {
     const bool waits = status.phase == TaskPhase::waiting || status.phase == TaskPhase::paused;
     if (still_.all && waits && status.reason != TaskReason::unconfirmed) {
       status.reason = TaskReason::scanning;
+    } else if (still_.needs_press && status.reason == TaskReason::breathing) {
+      status.reason = TaskReason::gate_turned_off;
     }
   }
 }

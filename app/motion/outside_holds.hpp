@@ -62,8 +62,9 @@ struct OutsideHolds {
 
 /** What stands still in a tick, whatever the pedal says. */
 struct StandStill {
-  bool all = false;       /**< every motion, as if the pedal were released */
-  bool insertion = false; /**< the insertion, unless it withdraws */
+  bool all = false;         /**< every motion, as if the pedal were released */
+  bool insertion = false;   /**< the insertion, unless it withdraws */
+  bool needs_press = false; /**< the insertion until the pedal is pressed anew, whatever the gate says */
 
   bool operator==(const StandStill&) const = default;
 };

@@ -224,6 +224,8 @@ enum class TaskReason : std::uint8_t {
                       pedal was held when the motion was approved */
   unconfirmed,     /**< waits for a `Confirmation` */
   breathing,       /**< the insertion waits for the breathing gate to open */
+  gate_turned_off, /**< the gate was turned off while the insertion waited for it: waits for a release and a
+                      press */
   scanning,        /**< waits for the end of a scan */
   not_homed,       /**< a step moves an axis to a position, and the axis is not homed */
   verdict_lost,    /**< the kernel's answer to a HOME got lost */

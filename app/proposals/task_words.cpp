@@ -23,6 +23,7 @@ std::string end_words(const std::string& axis, const TaskStatus& status) {
     case TaskReason::press_again:
     case TaskReason::unconfirmed:
     case TaskReason::breathing:
+    case TaskReason::gate_turned_off:
     case TaskReason::scanning:
     case TaskReason::swept:
     case TaskReason::measured:
@@ -171,6 +172,10 @@ std::string detail_of(const Robot& robot, const Proposal& proposal, const TaskSt
   if (is_open(status.phase) && status.reason == TaskReason::breathing) {
     return "Waits under the held pedal for the breathing gate: goes on by itself when that opens, and at the "
            "next press when it is turned off.";
+  }
+  if (is_open(status.phase) && status.reason == TaskReason::gate_turned_off) {
+    return "The breathing gate was turned off while this waited for it: release the pedal and press it to go "
+           "on.";
   }
   if (is_open(status.phase) && status.reason == TaskReason::scanning) {
     return "Held still for a scan; once that has ended, release the pedal and press it to go on.";

@@ -106,7 +106,14 @@ def test_a_closed_gate_that_is_turned_off_under_the_held_pedal_waits_for_a_new_p
     assert put(robot, "gate", in_use=False)["gate"]["state"] == "off"
     wait_for_ticks(robot, 500)
     assert depth(robot) == begin
-    assert "at the next press" in proposal(robot, number)["detail"]
+    assert "release the pedal and press it" in proposal(robot, number)["detail"]
+    put(robot, "gate", in_use=True)
+    for _ in range(5):
+        signal(robot, "open")
+        wait_for_ticks(robot, 100)
+    assert depth(robot) == begin, "the press that it waits for has not come"
+    assert "release the pedal and press it" in proposal(robot, number)["detail"]
+    put(robot, "gate", in_use=False)
     release(robot)
     press(robot)
     wait_for_proposal(robot, number, "done")

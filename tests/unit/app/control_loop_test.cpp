@@ -176,6 +176,8 @@ TEST_F(ControlLoopTest, ASignalOfTheBreathingGateGrowsOldOnTheControlThreadAndCo
 }
 
 TEST_F(ControlLoopTest, ABreathingGateThatIsTurnedOffWhileItHoldsLetsNothingGoOnBeforeTheNextPress) {
+  snapshot_.clock = ILK_CLOCK_SIM;
+  snapshot_.period_us = 1000;
   approve(1, MoveTask{test::insertion, 1500});
   channel_->holds.writing() = {};
   channel_->holds.writing().gate.in_use = true;
@@ -188,8 +190,17 @@ TEST_F(ControlLoopTest, ABreathingGateThatIsTurnedOffWhileItHoldsLetsNothingGoOn
   tick(100);
   EXPECT_EQ(channel_->view.newest().gate, GateState::off);
   EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
+  EXPECT_EQ(move().reason, TaskReason::gate_turned_off);
+  BreathingGate& gate = channel_->holds.writing().gate;
+  gate = {.in_use = true, .open = true};
+  gate.signal.hold({std::chrono::steady_clock::now(), snapshot_.state.system.tick, snapshot_.period_us});
+  channel_->holds.publish();
+  tick(100);
+  EXPECT_EQ(channel_->view.newest().gate, GateState::open);
+  EXPECT_EQ(sent(ILK_REQUEST_MOVE), nullptr);
   snapshot_.state.system.mode = ILK_MODE_READY;
   tick();
+  EXPECT_NE(move().reason, TaskReason::gate_turned_off);
   snapshot_.state.system.mode = ILK_MODE_MOTION;
   tick(2);
   EXPECT_EQ(move().phase, TaskPhase::executing);

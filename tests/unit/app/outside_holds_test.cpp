@@ -16,8 +16,8 @@ using test::neuro;
 
 constexpr std::uint32_t sideways = 4;
 constexpr std::int32_t deep = 1300;
-constexpr StandStill insertion_waits{.all = false, .insertion = true};
-constexpr StandStill all_wait{.all = true, .insertion = false};
+constexpr StandStill insertion_waits{.all = false, .insertion = true, .needs_press = false};
+constexpr StandStill all_wait{.all = true, .insertion = false, .needs_press = false};
 constexpr StandStill nothing_waits{};
 
 PathProgram insert_to(std::int32_t counts) { return {{MoveLeg{{{test::insertion, counts}}, 0.0, 0.0}}}; }
