@@ -1,6 +1,7 @@
 #include "calibration/calibration.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
@@ -408,6 +409,53 @@ double mean_variance_mm2(const Fit& fit, const MatrixXd& columns, const MatrixXd
   return sum / static_cast<double>(poses);
 }
 
+/** An axis that goes through less of its range than this leaves a gap. */
+constexpr double least_range = 0.25;
+/** Of the correlations' smallest eigenvalue, which is 1 when every axis moves for itself and 0 when one
+ * follows from the others: along one direction the poses then go a fifth as far as their axes do. */
+constexpr double least_independence = 0.04;
+
+std::vector<std::string> gaps_of(const Robot& robot, const std::vector<std::size_t>& axes,
+                                 const std::vector<MeasuredPose>& poses) {
+  std::vector<std::string> gaps;
+  MatrixXd moves(static_cast<Index>(poses.size()), static_cast<Index>(axes.size()));
+  std::vector<Index> moved;
+  for (std::size_t joint = 0; joint < axes.size(); ++joint) {
+    const auto column = static_cast<Index>(joint);
+    for (std::size_t row = 0; row < poses.size(); ++row) {
+      moves(static_cast<Index>(row), column) = poses[row].positions[axes[joint]];
+    }
+    const Axis& axis = robot.axes[axes[joint]];
+    const double range =
+        std::abs(axis.to_unit(axis.soft_limits.max_counts) - axis.to_unit(axis.soft_limits.min_counts));
+    const double gone = moves.col(column).maxCoeff() - moves.col(column).minCoeff();
+    if (gone < least_range * range) {
+      gaps.push_back('"' + axis.name + "\" goes through " +
+                     std::to_string(std::lround(100.0 * gone / range)) + " % of its range");
+    }
+    if (gone > 0.0) {
+      moves.col(column).array() -= moves.col(column).mean();
+      moves.col(column).normalize();
+      moved.push_back(column);
+    }
+  }
+  const MatrixXd together = moves(Eigen::all, moved);
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> directions(together.transpose() * together);
+  if (!moved.empty() && directions.eigenvalues()[0] < least_independence) {
+    std::string names;
+    for (std::size_t place = 0; place < moved.size(); ++place) {
+      constexpr double share = 0.1;
+      const double part = directions.eigenvectors()(static_cast<Index>(place), 0);
+      if (part * part > share) {
+        names +=
+            (names.empty() ? "\"" : "\", \"") + robot.axes[axes[static_cast<std::size_t>(moved[place])]].name;
+      }
+    }
+    gaps.push_back("the positions of " + names + "\" follow from one another");
+  }
+  return gaps;
+}
+
 /** To six digits, as the file is written. */
 double six_digits(double value) { return std::stod(text_of(value)); }
 
@@ -582,6 +630,7 @@ tl::expected<Calibration, RobotError> calibrate(const Robot& robot, std::string_
     found.fitted.push_back(
         {number.name(), number.unit, number.was, is, sd, sd * boost::math::quantile(student, 0.975)});
   }
+  found.gaps = gaps_of(robot, model.axes(), poses);
   found.misses = judged(fit, columns, covariance, rows, poses);
   found.tracker_from_zframe = fit.frame();
   found.is_rms_mm = rms_mm();

@@ -68,6 +68,9 @@ struct Calibration {
   std::optional<double> was_rms_rad; /**< of directions */
   std::optional<double> is_rms_rad;
   std::size_t degrees_of_freedom = 0;
+  /** Where the poses do not go, for people: axes that hardly move in them, or move with others. Nothing that
+   * was found is known there. */
+  std::vector<std::string> gaps;
   double point_sd_mm = 0.0; /**< along each coordinate: misses by degrees of freedom */
   /** What the robot's file should state (error_budget.hpp): standard deviation of the treatment point along
    * each coordinate, at poses like those measured. Its square is the mean variance that the uncertainty of

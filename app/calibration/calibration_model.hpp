@@ -40,6 +40,9 @@ class CalibrationModel {
   /** The family's numbers, then the zeros of the axes that have a switch. */
   [[nodiscard]] const std::vector<FileNumber>& numbers() const { return numbers_; }
 
+  /** Places, among the robot's axes, of those that play a role. */
+  [[nodiscard]] const std::vector<std::size_t>& axes() const { return axis_of_joint_; }
+
   /** Poses of the treatment point in the zFrame with every number changed by so much, mm or rad; or the first
    * thing that is refused, with the line of its pose: 0 when it is a number. */
   [[nodiscard]] tl::expected<std::vector<Pose>, std::pair<std::uint32_t, std::string>> poses(

@@ -60,6 +60,7 @@ Json to_json(const Robot& robot, const Calibration& found) {
           {"calibration_mm", found.calibration_mm},
           {"worst", worst},
           {"outliers", outliers},
+          {"gaps", found.gaps},
           {"tracker_from_zframe", row_major(found.tracker_from_zframe)}};
 }
 

@@ -52,6 +52,22 @@ std::string written(double value, bool whole) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
+/** The key of `before` as its line has it may begin with those of its tables: "drive.max = 1". */
+Edit behind(std::string_view text, const toml::node& before, const AxisNumber& number) {
+  const std::size_t value = offset_of(text, before.source().begin);
+  const std::size_t begin = text.find_last_of("{,\n", text.rfind('=', value)) + 1;
+  const bool inside = begin > 0 && text[begin - 1] != '\n';
+  const std::size_t end = offset_of(text, before.source().end);
+  const std::size_t place = inside ? end : std::min(text.find('\n', end), text.size());
+  std::string_view key = text.substr(begin, text.rfind('=', value) - begin);
+  key.remove_prefix(inside ? std::min(key.find_first_not_of(" \t"), key.size()) : 0);
+  const std::size_t last = key.find_last_of(". \t", key.find_last_not_of(" \t"));
+  const std::size_t begins = last == std::string_view::npos ? 0 : last + 1;
+  return {place, place,
+          (inside ? ", " : "\n") + std::string(key.substr(0, begins)) +
+              number.key.substr(number.key.rfind('.') + 1) + " = " + written(number.value, false)};
+}
+
 }  // namespace
 
 tl::expected<std::string, RobotError> with_numbers(std::string_view text, std::string file,
@@ -75,14 +91,7 @@ tl::expected<std::string, RobotError> with_numbers(std::string_view text, std::s
     const toml::node* const node = table->at_path(number.key).node();
     const toml::node* const before = number.after.empty() ? nullptr : table->at_path(number.after).node();
     if (node == nullptr && before != nullptr) {
-      const std::size_t dot = number.key.rfind('.');
-      const toml::table* const holder = table->at_path(number.key.substr(0, dot)).as_table();
-      const bool inside = holder != nullptr && holder->is_inline();
-      const std::size_t after = offset_of(text, before->source().end);
-      const std::size_t end = inside ? after : std::min(text.find('\n', after), text.size());
-      edits.push_back(
-          {end, end,
-           (inside ? ", " : "\n") + number.key.substr(dot + 1) + " = " + written(number.value, false)});
+      edits.push_back(behind(text, *before, number));
       continue;
     }
     if (node == nullptr || !node->is_number()) {

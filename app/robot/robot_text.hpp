@@ -20,7 +20,8 @@ struct AxisNumber {
                       "kinematics.home_rcm_mm[2]" */
   double value = 0.0;
   std::string after = {}; /**< key of the same table behind which a number that is not there yet is written,
-                             on a line of its own unless the table is one line; empty: it must be there */
+                             as that one is: dotted, on a line of its own or within a table of one line;
+                             empty: it must be there */
 };
 
 /**

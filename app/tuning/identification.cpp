@@ -58,7 +58,11 @@ RigResult<void> Identification::ready() {
       }
     }
   }
-  return tl::unexpected(homed.error() + ", before the first move");
+  return tl::unexpected(
+      homed.error() +
+      ", before the first move, with dead zones up to a fifth of drive.max as well: more than that "
+      "no file may state. Look at what holds the axis, at its motor's supply and its encoder, and at "
+      "drive.max");
 }
 
 /** From power on. The switch opens when homing backs off, and closes when it comes again, slowly. */

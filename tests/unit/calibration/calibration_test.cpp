@@ -102,6 +102,7 @@ TEST_P(CalibrationOf, TrueNumbersLieInTheirIntervalsAndUnseenPosesWithinTheState
   }
   RecordProperty("fitted", keys);
   ASSERT_GE(first.fitted.size(), 4U) << keys;
+  EXPECT_THAT(first.gaps, testing::IsEmpty()) << "these poses fill the workspace";
 
   std::map<std::string, int> within;
   int all_within = 0;
@@ -219,6 +220,31 @@ TEST_F(CalibrationOfTheNeuro, AWrongPoseIsNamedByItsLineBeforeAllOthers) {
   EXPECT_EQ(found->misses.front().line, measured[17].line);
   EXPECT_TRUE(found->misses.front().outlier);
   EXPECT_EQ(std::ranges::count(found->misses, true, &PoseMiss::outlier), 1);
+}
+
+TEST_F(CalibrationOfTheNeuro, WhereThePosesDoNotGoIsSaid) {
+  const Machine machine(file_, {});
+  const auto spread = test::random_positions(file_, 40, 1);
+  const auto with = [&](const std::vector<AxisPositions>& positions) {
+    const auto found = calibrated(test::measured(machine, positions, in_the_room(0.003), generator_));
+    EXPECT_TRUE(found) << found.error().message();
+    return found->gaps;
+  };
+  std::vector<AxisPositions> line;
+  for (std::size_t place = 0; place < 40; ++place) {
+    const double share = static_cast<double>(place) / 39.0;
+    line.push_back(spread[0]);
+    for (std::size_t axis = 0; axis < line.back().size(); ++axis) {
+      line.back()[axis] += share * (spread[1][axis] - spread[0][axis]);
+    }
+  }
+  EXPECT_THAT(with(line), Contains(HasSubstr("follow from one another")));
+  auto still = spread;
+  const auto yaw = static_cast<std::size_t>(file_.robot.find("yaw") - file_.robot.axes.data());
+  for (AxisPositions& positions : still) {
+    positions[yaw] = -0.7;
+  }
+  EXPECT_THAT(with(still), testing::ElementsAre("\"yaw\" goes through 0 % of its range"));
 }
 
 TEST_F(CalibrationOfTheNeuro, AStatedDeviationOfTheTrackerDoesNotCountAsErrorOfTheRobot) {

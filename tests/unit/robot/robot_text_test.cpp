@@ -54,6 +54,13 @@ TEST(RobotText, ANumberOfTheWholeFileChangesAndAMissingOneIsWrittenBehindAnother
   expected = text;
   expected.insert(expected.find(", min = 0, dead_zone = 922"), ", resonance_hz = -200.0");
   EXPECT_EQ(with_numbers(text, "r.toml", "yaw", {&beside, 1}).value(), expected) << "a table of one line";
+  const std::string dotted = "[[axis]]\nname = \"yaw\"\n  drive.max = 7 # its most\ndrive.min = 0\n";
+  EXPECT_EQ(
+      with_numbers(dotted, "r.toml", "yaw", {&beside, 1}).value(),
+      "[[axis]]\nname = \"yaw\"\n  drive.max = 7 # its most\n  drive.resonance_hz = -200.0\ndrive.min = 0\n");
+  const std::string within = "axis = [{ name = \"yaw\", drive.max=7, drive.min = 0 }]";
+  EXPECT_EQ(with_numbers(within, "r.toml", "yaw", {&beside, 1}).value(),
+            "axis = [{ name = \"yaw\", drive.max=7, drive.resonance_hz = -200.0, drive.min = 0 }]");
   const AxisNumber nowhere{"axis[0].slot", 3.0};
   EXPECT_EQ(with_numbers(text, "r.toml", "", {&nowhere, 1}).error().key, "axis[0].slot");
 }
