@@ -50,6 +50,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
       sessions_(store, clocks),
       motion_control_(static_cast<std::uint32_t>(std::chrono::system_clock::to_time_t(clocks.utc()))),
       in_force_{some_epoch()},
+      alarms_(robot, config),
       context_{executor,
                robot,
                config,
@@ -66,6 +67,7 @@ Api::Api(const boost::asio::any_io_executor& executor, const Robot& robot, const
                in_force_,
                declared_positions_,
                stops_,
+               alarms_,
                log,
                [this](const json& message) { stream_.send_text(message); },
                clocks.utc,
@@ -102,6 +104,7 @@ void Api::follow_proposals() {
     stream_.send_text(message);
     navigation_.tell(proposal);
     runs_.follow(proposal);
+    alarms_.follow(proposal);
     const PathTask* path = proposal.work<PathTask>();
     if (proposal.state == ProposalState::done && path != nullptr && path->program == trajectory_.program) {
       trajectory_ = {};
@@ -122,7 +125,7 @@ void Api::follow_kernel() {
   };
   control_.on_event = [this](const ilk_event_t& event) {
     json message = event_json(event);
-    spdlog::info("kernel: {}", message.dump());
+    spdlog::info("{}", event_words(context_.robot, event));
     stream_.send_text(message);
     // That the kernel stopped is in the record of the STOP, of which there may be thousands a second.
     const bool stopped = event.value[1] == ILK_REQUEST_STOP && event.value[3] == ILK_VERDICT_ACCEPTED;
@@ -321,6 +324,31 @@ asio::awaitable<void> Api::expire_registration(std::string reason) {
   }
 }
 
+void Api::look_after_alarms(const ControlView& seen) {
+  const UtcTime time = context_.clock();
+  const std::vector<Alarm> changed = alarms_.see(seen, context_.steady_clock(), time);
+  for (const Alarm& alarm : changed) {
+    const AlarmCondition& condition = alarm.condition;
+    const std::string_view priority = alarm_priority_name(condition.priority);
+    if (alarm.ended) {
+      spdlog::info("alarm {} is over: {}", alarm.id, condition.text);
+      continue;
+    }
+    spdlog::log(condition.priority == AlarmPriority::high ? spdlog::level::err : spdlog::level::warn,
+                "alarm {}, priority {}: {} {}", alarm.id, priority, condition.text, condition.next_step);
+    if (alarm.begun == time) {
+      AuditEntry entry = context_.entry({}, AuditKind::alarm, to_json(alarm));
+      entry.actor = audit_actor::app;
+      context_.store.note(std::move(entry));
+    }
+  }
+  if (!changed.empty()) {
+    json message = alarms_.to_json();
+    message["type"] = "alarms";
+    stream_.send_text(message);
+  }
+}
+
 void Api::look_after_sessions() {
   for (const Broadcaster::Subscriber& subscriber : stream_.subscribers()) {
     sessions_.touch(subscriber.caller.session);
@@ -369,6 +397,7 @@ asio::awaitable<void> Api::broadcast() {
     look_after_pedal(seen);
     look_after_registration(seen);
     look_after_sessions();
+    look_after_alarms(seen);
   }
 }
 

@@ -99,6 +99,7 @@ class Api {
   void look_after_registration(const ControlView& seen);
   boost::asio::awaitable<void> expire_registration(std::string reason);
   void look_after_sessions();
+  void look_after_alarms(const ControlView& seen);
   boost::asio::awaitable<tl::expected<std::optional<Session>, Problem>> session_of(const Request& request);
 
   ControlClient control_;
@@ -117,6 +118,7 @@ class Api {
   InForce in_force_;
   DeclaredPositions declared_positions_;
   StopRecords stops_;
+  Alarms alarms_;
   std::uint64_t role_refusals_ = 0;
   Context context_;
   RunRecorder runs_{context_};
@@ -129,6 +131,7 @@ class Api {
   MotorRoutes motor_routes_{context_, router_};
   ProposalRoutes proposal_routes_{context_, router_};
   HoldRoutes hold_routes_{context_, router_};
+  AlarmRoutes alarm_routes_{context_, router_};
   JogRoutes jog_routes_{context_, router_};
   BenchRoutes bench_routes_{context_, router_};
   BiopsyRoutes biopsy_routes_{context_, router_};

@@ -167,6 +167,19 @@ class HistoryRoutes {
   History history_;
 };
 
+/** Routes of the alarms. */
+class AlarmRoutes {
+ public:
+  /** Both must outlive it. */
+  AlarmRoutes(const Context& context, Router& router);
+
+ private:
+  [[nodiscard]] Reply list() const;
+  [[nodiscard]] boost::asio::awaitable<Reply> acknowledge(const Call& call) const;
+
+  const Context& context_;
+};
+
 /** Routes of what holds motion still: the breathing gate, and a scan. */
 class HoldRoutes {
  public:

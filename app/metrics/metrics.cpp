@@ -189,6 +189,11 @@ void add_app(Families& families, const Robot& robot, const ilk_config_t& config,
       MetricType::Gauge, "interlock_kernel_connected",
       "1 while the app is attached to a kernel; without one, there is nothing below but the app's own.");
   families.add(attached ? 1.0 : 0.0);
+  families.begin(MetricType::Gauge, "interlock_alarms", "Conditions that ask somebody to act, by priority.");
+  constexpr std::array priorities{"low", "medium", "high"};
+  for (std::size_t place = 0; place < priorities.size(); ++place) {
+    families.add(static_cast<double>(counts.alarms[place]), {{"priority", priorities[place]}});
+  }
   families.begin(MetricType::Gauge, "interlock_consoles", "Clients of the stream.");
   families.add(static_cast<double>(counts.consoles));
   families.begin(MetricType::Counter, "interlock_log_lines_lost_total",

@@ -5,6 +5,7 @@
  */
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -20,9 +21,10 @@ inline constexpr const char* metrics_media_type = "text/plain; version=0.0.4; ch
 
 /** What the app counts by itself. */
 struct AppCounts {
-  std::size_t consoles = 0;         /**< clients of the stream */
-  std::uint64_t log_lines_lost = 0; /**< since the app started, as the next */
-  std::uint64_t role_refusals = 0;  /**< requests of users whose role does not suffice */
+  std::array<std::size_t, 3> alarms{}; /**< that are there: of priority low, medium and high */
+  std::size_t consoles = 0;            /**< clients of the stream */
+  std::uint64_t log_lines_lost = 0;    /**< since the app started, as the next */
+  std::uint64_t role_refusals = 0;     /**< requests of users whose role does not suffice */
 };
 
 /**

@@ -312,6 +312,7 @@ void put_in_force(const Context& context, std::int64_t number, const std::string
     context.trajectory = {};
   }
   context.registry.enter_case(number, by);
+  context.alarms.note_registration("");  // that of another case
 }
 
 CaseAnswer list_cases(const Context& context) {

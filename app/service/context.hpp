@@ -13,6 +13,7 @@
 #include "log/log.hpp"
 #include "proposals/motion_registry.hpp"
 #include "robot/robot.hpp"
+#include "service/alarms.hpp"
 #include "service/bench.hpp"
 #include "service/biopsy_service.hpp"
 #include "service/clocks.hpp"
@@ -48,6 +49,7 @@ struct Context {
   InForce& in_force;
   DeclaredPositions& declared_positions;
   StopRecords& stop_records;
+  Alarms& alarms;
   Log& log;
   std::function<void(const nlohmann::json&)> publish; /**< a message to every console */
   std::function<UtcTime()> clock;

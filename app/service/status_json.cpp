@@ -239,6 +239,37 @@ json event_json(const ilk_event_t& event) {
   return message;
 }
 
+std::string event_words(const Robot& robot, const ilk_event_t& event) {
+  const auto title = [&](std::uint32_t slot) {
+    const Axis* const axis = robot.at_slot(slot);
+    return axis == nullptr ? "slot " + std::to_string(slot) : axis->title;
+  };
+  const auto& value = event.value;
+  switch (event.kind) {
+    case ILK_EVENT_VERDICT: {
+      const bool accepted = value[3] == ILK_VERDICT_ACCEPTED;
+      const std::string what = catalog::name(Family::request, value[1]) + " (" + title(value[2]) + ")";
+      return "The kernel " + (accepted ? "accepted " + what
+                                       : "refused " + what + ": " + catalog::name(Family::verdict, value[3]));
+    }
+    case ILK_EVENT_MODE:
+      return "The kernel went from " + catalog::name(Family::mode, value[0]) + " to " +
+             catalog::name(Family::mode, value[1]) +
+             (value[1] == ILK_MODE_LOCKED
+                  ? ": " + catalog::name(Family::cause, value[2]) + ", value " + std::to_string(value[3])
+                  : "");
+    case ILK_EVENT_FAULT:
+      return title(value[0]) + " faulted: " + catalog::name(Family::fault, value[1]) + ", value " +
+             std::to_string(static_cast<std::int32_t>(value[2]));
+    case ILK_EVENT_AXIS:
+      return title(value[0]) + " went from " + catalog::name(Family::axis_state, value[1]) + " to " +
+             catalog::name(Family::axis_state, value[2]) + (value[3] != 0 ? ", homed" : ", not homed");
+    default:
+      return "The kernel sent an event of kind " + std::to_string(event.kind) +
+             ", which this app does not know";
+  }
+}
+
 json events_lost_json(std::uint32_t count) { return {{"type", "event"}, {"kind", "lost"}, {"count", count}}; }
 
 nlohmann::json stop_json(const std::optional<StopAnswer>& answer) {

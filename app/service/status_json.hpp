@@ -33,6 +33,9 @@ nlohmann::json motor_json(const Axis& axis, const ilk_config_t& config, const Co
 /** Text message of the stream for a kernel event. */
 nlohmann::json event_json(const ilk_event_t& event);
 
+/** The same in a sentence, for the log. */
+std::string event_words(const Robot& robot, const ilk_event_t& event);
+
 /** What a STOP is answered with: the kernel's verdict and tick, null when none came in time. */
 nlohmann::json stop_json(const std::optional<StopAnswer>& answer);
 

@@ -163,6 +163,9 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> change_targeting(const 
     co_return fail(changed->targeting.error());
   }
   Targeting kept = judged(*changed->targeting, context.in_force);
+  if (kept.registration_problem.empty()) {
+    context.alarms.note_registration("");
+  }
   if (make == with_registration && !kept.registration_problem.empty()) {
     co_return fail(overtaken(kept.registration_problem));
   }
@@ -220,6 +223,7 @@ boost::asio::awaitable<tl::expected<Targeting, Problem>> expire_registration(con
     }
     co_return fail(kept.error());
   }
+  context.alarms.note_registration(kept->registration_expired);
   co_return judged(*kept, context.in_force);
 }
 

@@ -107,6 +107,8 @@ std::string_view audit_kind_name(AuditKind kind) {
       return "acknowledgement";
     case AuditKind::case_step:
       return "case";
+    case AuditKind::alarm:
+      return "alarm";
   }
   return "unknown";
 }

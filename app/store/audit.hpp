@@ -37,7 +37,8 @@ enum class AuditKind {
   records_lost,
   retention,
   acknowledgement,
-  case_step
+  case_step,
+  alarm
 };
 
 /** The name in spec/openapi.yaml: "login_refused". */

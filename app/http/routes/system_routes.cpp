@@ -49,7 +49,12 @@ Reply SystemRoutes::configuration() const {
 }
 
 Reply SystemRoutes::metrics() const {
-  const AppCounts counts{.consoles = stream_.subscribers().size(),
+  std::array<std::size_t, alarm_priorities> alarms{};
+  for (const Alarm& alarm : context_.alarms.present()) {
+    ++alarms[static_cast<std::size_t>(alarm.condition.priority)];
+  }
+  const AppCounts counts{.alarms = alarms,
+                         .consoles = stream_.subscribers().size(),
                          .log_lines_lost = context_.log.lines_lost(),
                          .role_refusals = context_.role_refusals};
   return Success{.body = metrics_text(context_.robot, context_.config, context_.view(), counts,

@@ -682,6 +682,42 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/alarms": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What asks somebody to act, the worst first, and what did lately. The stream carries the same, without `past`, as a text message of type `alarms`. */
+        get: operations["listAlarms"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/alarms/{id}/acknowledge": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: number;
+            };
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /** Answers for an alarm. It stays for as long as its condition lasts; that of a motion which ended before its goal goes. Audited. One that somebody has acknowledged, or that is over, stays as it is. */
+        post: operations["acknowledgeAlarm"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/runs": {
         parameters: {
             query?: never;
@@ -1947,6 +1983,51 @@ export interface components {
             /** @description Why it is in this state, for people. */
             detail: string;
         };
+        AlarmList: {
+            /** @description Those that are there: by priority, then those that nobody has acknowledged, then the oldest. */
+            alarms: components["schemas"]["Alarm"][];
+            /** @description Those that are over, the newest first; at most 100, since the app was started. */
+            past: components["schemas"]["Alarm"][];
+        };
+        /** @description A condition that asks somebody to act, from its begin to its end. One that begins anew within a minute is the same. */
+        Alarm: {
+            /** @description From 1 on since the app was started. */
+            id: number;
+            /** @description Of the catalog: a cause of LOCKED, a fault of an axis, or INIT; or NO_KERNEL, SILENT (nothing new for a second), LATE (this computer is too busy), REGISTRATION (it has expired), MOTION (one ended before its goal). */
+            code: string;
+            /**
+             * @description After IEC 60601-1-8. high: act at once; medium: act soon; low: know of it.
+             * @enum {string}
+             */
+            priority: "low" | "medium" | "high";
+            /**
+             * @description Where to look.
+             * @enum {string}
+             */
+            layer: "person" | "axis" | "card" | "bus" | "computer" | "simulator" | "kernel";
+            /** @description What is, for people. */
+            text: string;
+            next_step: string;
+            /** @description Names of those that it is about. */
+            axes: string[];
+            /** Format: date-time */
+            begun: string;
+            /**
+             * Format: date-time
+             * @description When it began last.
+             */
+            last: string;
+            /** @description How often it has begun. */
+            count: number;
+            /** Format: date-time */
+            ended: string | null;
+            /** @description By whom, since it began last. */
+            acknowledged: null | {
+                user: string;
+                /** Format: date-time */
+                time: string;
+            };
+        };
         /** @description What stays of the runs. One that goes on is never removed. */
         RunRetention: {
             /** @description The newest. */
@@ -2985,7 +3066,7 @@ export interface components {
              * @description `authority` is the former name of `control`; only old records have it.
              * @enum {string}
              */
-            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "control" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention" | "acknowledgement" | "case";
+            kind: "start" | "login" | "login_refused" | "logout" | "session_ended" | "user" | "control" | "authority" | "proposal" | "request" | "verdict" | "stop" | "setting" | "restore" | "bench" | "connection" | "records_lost" | "retention" | "acknowledgement" | "case" | "alarm";
             detail: Record<string, unknown>;
             /** @description SHA-256, 64 hex digits. */
             hash: string;
@@ -4394,6 +4475,53 @@ export interface operations {
                 };
             };
             422: components["responses"]["Invalid"];
+            503: components["responses"]["NoStore"];
+        };
+    };
+    listAlarms: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Alarms. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlarmList"];
+                };
+            };
+            401: components["responses"]["Login"];
+        };
+    };
+    acknowledgeAlarm: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Alarms. */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AlarmList"];
+                };
+            };
+            401: components["responses"]["Login"];
+            403: components["responses"]["Role"];
+            404: components["responses"]["NotFound"];
             503: components["responses"]["NoStore"];
         };
     };
