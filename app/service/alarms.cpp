@@ -95,7 +95,7 @@ std::string_view alarm_priority_name(AlarmPriority priority) noexcept {
 json to_json(const Alarm& alarm) {
   const AlarmCondition& condition = alarm.condition;
   std::string text = condition.text;
-  if (condition.layer == "computer") {
+  if (condition.layer == "computer" && condition.code != "LATE") {
     text += " This computer was late just before: look there first.";
   }
   return {{"id", alarm.id},

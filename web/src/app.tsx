@@ -3,6 +3,7 @@ import { AccountPage } from "./panels/account/AccountPage";
 import { AuditPage } from "./panels/audit/AuditPage";
 import { CodesPage } from "./panels/codes/CodesPage";
 import { Header } from "./panels/header/Header";
+import { Navigation } from "./panels/header/Navigation";
 import { LoginPage } from "./panels/login/LoginPage";
 import { RobotPage } from "./panels/robot/RobotPage";
 import { UsersPage } from "./panels/users/UsersPage";
@@ -22,7 +23,10 @@ export function App() {
   return (
     <>
       <Header />
-      {loggedIn ? <Page /> : <LoginPage />}
+      <div className="frame">
+        <Navigation />
+        {loggedIn ? <Page /> : <LoginPage />}
+      </div>
     </>
   );
 }

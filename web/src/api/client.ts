@@ -37,6 +37,7 @@ export type DeclaredPositions = Schemas["DeclaredPositions"];
 export type Connection = Schemas["Connection"];
 export type NavigationConnection = Schemas["NavigationConnection"];
 export type Imager = Schemas["Imager"];
+export type Alarm = Schemas["Alarm"];
 export type Holds = Schemas["Holds"];
 export type NavigationRole = NavigationConnection["role"];
 export type Biopsy = Schemas["Biopsy"];
@@ -243,6 +244,9 @@ export const api = {
     act(() => http.PUT("/api/biopsy/membranes", { body: { depths_mm, next: 0 } })),
   resetMembranes: () => act(() => http.POST("/api/biopsy/membranes/reset")),
 
+  alarms: () => read(() => http.GET("/api/alarms")),
+  acknowledgeAlarm: (id: number) =>
+    act(() => http.POST("/api/alarms/{id}/acknowledge", { params: { path: { id } } })),
   holds: () => read(() => http.GET("/api/holds")),
   setBreathingGate: (in_use: boolean) => act(() => http.PUT("/api/holds/gate", { body: { in_use } })),
   holdForScan: (active: boolean) => act(() => http.PUT("/api/holds/scan", { body: { active } })),

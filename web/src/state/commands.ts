@@ -125,7 +125,13 @@ async function actOnEach(slots: readonly number[], action: AxisAction): Promise<
   return true;
 }
 
-/** Unlocks where need be, waits for power, and enables each axis that is disabled. STOP ends it. */
+/** The slots of the axes in that state. */
+function slotsIn(state: string): readonly number[] {
+  const { motors, frame } = useConsole.getState();
+  return motors.map(({ slot }) => slot).filter((slot) => frame?.axes[slot]?.state === state);
+}
+
+/** Clears every fault, unlocks where need be, waits for power, and enables each axis that is disabled. STOP ends it. */
 export async function makeReady(): Promise<void> {
   const settled = settling();
   if (useConsole.getState().glance?.mode === "LOCKED") {
@@ -134,12 +140,16 @@ export async function makeReady(): Promise<void> {
     if (!outcome.ok) return;
   }
   if (!(await settled(() => useConsole.getState().glance?.power === "on"))) return;
-  const { motors, frame } = useConsole.getState();
-  const disabled = motors.filter(({ slot }) => frame?.axes[slot]?.state === "DISABLED");
-  await actOnEach(
-    disabled.map(({ slot }) => slot),
-    "enable",
-  );
+  if (!(await actOnEach(slotsIn("FAULTED"), "clear-fault"))) return;
+  await settled(() => slotsIn("FAULTED").length === 0);
+  await actOnEach(slotsIn("DISABLED"), "enable");
+}
+
+/** Answers for an alarm; a refusal is shown where the robot's are. */
+export async function acknowledgeAlarm(id: number): Promise<void> {
+  const outcome = await api.acknowledgeAlarm(id);
+  if (outcome.ok) useConsole.setState({ alarms: outcome.value.alarms });
+  tell("robot", outcome);
 }
 
 /** Declares that the axes of these slots stand at home, then proposes to home the robot where `homes` says so. STOP ends it. */

@@ -3,6 +3,7 @@ import { api, onLoggedOut, type Session } from "../api/client";
 import { kernelWith } from "../kernel/asking";
 import { openStream, type Phase, type Stream } from "../stream/connection";
 import { decodeFrame, FrameError } from "../stream/decode";
+import { announceAlarms } from "./announce";
 import { untilWorseMs } from "./freshness";
 import { MOST_LINES, mergeLines } from "./log";
 import { type StreamMessage, streamMessage } from "./messages";
@@ -32,6 +33,7 @@ export const sessionEnded: Notice = {
 /** Starts feeding the store, for as long as the page is there. */
 export function startFeed(): void {
   setInterval(passTime, TIME_STEP_MS);
+  announceAlarms();
   onLoggedOut(() => leave(sessionEnded));
   void findSession();
   void keepStatus();
@@ -144,6 +146,9 @@ function takeIn(message: StreamMessage): void {
     case "mode":
       useConsole.setState({ mode: message });
       break;
+    case "alarms":
+      useConsole.setState({ alarms: message.alarms });
+      break;
     case "holds":
       useConsole.setState({ holds: message, holdsAtMs: performance.now() });
       break;
@@ -161,12 +166,13 @@ async function loadDescription(): Promise<void> {
   clearTimeout(reload);
   describedConfigCrc = null;
   const before = useConsole.getState();
-  const [robots, motors, configuration, mode, control, holds, logs, proposals] = await Promise.all([
+  const [robots, motors, configuration, mode, control, alarms, holds, logs, proposals] = await Promise.all([
     api.robots(),
     api.motors(),
     api.kernelConfiguration(),
     api.mode(),
     api.control(),
+    api.alarms(),
     api.holds(),
     api.logs(MOST_LINES),
     api.proposals(),
@@ -182,6 +188,8 @@ async function loadDescription(): Promise<void> {
   const { mode: newestMode, control: newestControl } = useConsole.getState();
   if (mode.ok && newestMode === before.mode) useConsole.setState({ mode: mode.value });
   if (control.ok && newestControl === before.control) useConsole.setState({ control: control.value });
+  if (alarms.ok && useConsole.getState().alarms === before.alarms)
+    useConsole.setState({ alarms: alarms.value.alarms });
   if (holds.ok && useConsole.getState().holds === before.holds)
     useConsole.setState({ holds: holds.value, holdsAtMs: performance.now() });
   if (logs.ok) {

@@ -1,6 +1,7 @@
 /** Everything the console knows. The stream and the answers of the app write it; panels only read it. */
 import { create } from "zustand";
 import type {
+  Alarm,
   Holds,
   LogLevel,
   LogLine,
@@ -53,6 +54,8 @@ export interface ConsoleState {
   readonly pageKernel: ConfiguredKernel | null;
   readonly mode: ModeAnswer | null;
   readonly control: MotionControl | null;
+  /** What asks somebody to act, the worst first. */
+  readonly alarms: readonly Alarm[];
   /** What holds motion still from outside, as it was at `holdsAtMs`; null until the app has said it. */
   readonly holds: Holds | null;
   readonly holdsAtMs: number;
@@ -97,6 +100,7 @@ export const initialState: ConsoleState = {
   pageKernel: null,
   mode: null,
   control: null,
+  alarms: [],
   holds: null,
   holdsAtMs: 0,
   controlNotice: null,

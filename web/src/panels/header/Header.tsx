@@ -9,10 +9,11 @@ import { hostLateHelp, hostLateWords } from "../../state/hostLate";
 import { useConsole } from "../../state/store";
 import type { Phase } from "../../stream/connection";
 import type { Glance } from "../../stream/decode";
+import { AlarmLine } from "../alarms/AlarmLine";
+import { ControlBar } from "./ControlBar";
 import { LocalClock } from "./LocalClock";
-import { ModeStrip } from "./ModeStrip";
-import { SessionBar } from "./SessionBar";
 import { StopCorner } from "./StopCorner";
+import { Who } from "./Who";
 import "./header.css";
 
 /** Always visible: what the system is, whether it may move, how old that knowledge is, and STOP. */
@@ -24,8 +25,6 @@ export function Header() {
   const controlNotice = useConsole((state) => state.controlNotice);
   return (
     <header className="header" data-level={level}>
-      <Banners />
-      <SessionBar />
       <div className="status-bar">
         <Robot />
         <div className="status-data">
@@ -44,10 +43,12 @@ export function Header() {
           <Estop glance={known} />
           <Pedal glance={known} />
         </div>
+        {loggedIn && <ControlBar />}
         <Connection />
+        <Who />
         <StopCorner />
       </div>
-      <ModeStrip glance={known} />
+      <AlarmLine glance={known} />
       {unlockNotice !== null && (
         <p className="header-notice" role="alert">
           <NoticeText lead="Unlock refused:" notice={unlockNotice} />
@@ -62,17 +63,17 @@ export function Header() {
   );
 }
 
-function Banners() {
+/** What nobody may take for a robot that moves in earnest. */
+function Badges() {
   const simulated = useConsole((state) => state.glance?.simulated ?? false);
   const degraded = useConsole((state) => state.glance?.degraded ?? false);
   const replay = useConsole((state) => state.glance?.replay ?? false);
-  if (!simulated && !degraded && !replay) return null;
   return (
-    <div className="banners">
-      {replay && <strong className="banner replay">REPLAY OF A RECORDING: NOTHING MOVES</strong>}
-      {simulated && <strong className="banner simulated">SIMULATED HARDWARE</strong>}
-      {degraded && <strong className="banner degraded">DEGRADED: no real-time rights</strong>}
-    </div>
+    <>
+      {replay && <strong className="badge replay">REPLAY OF A RECORDING: NOTHING MOVES</strong>}
+      {simulated && <strong className="badge simulated">SIMULATED HARDWARE</strong>}
+      {degraded && <strong className="badge degraded">DEGRADED: no real-time rights</strong>}
+    </>
   );
 }
 
@@ -82,9 +83,10 @@ function Robot() {
   const late = useConsole((state) => state.status?.host_late ?? null);
   return (
     <div className="robot">
-      <h1>Interlock</h1>
+      <h1>{robot ?? "Interlock"}</h1>
+      <Badges />
       <p>
-        {robot ?? "no robot yet"}
+        <LocalClock />
         {clock === "sim" && <span className="clock"> · simulated clock</span>}
         {late !== null && (
           <span className="clock" title={hostLateHelp(late)}>
@@ -93,7 +95,6 @@ function Robot() {
           </span>
         )}
       </p>
-      <LocalClock />
     </div>
   );
 }

@@ -21,7 +21,6 @@ export function ModeStrip({ glance }: { readonly glance: Glance | null }) {
     );
   }
   const text = locked ? entry("cause", glance.cause) : entry("mode", glance.mode);
-  const later = glance.causesSeen.filter((cause) => cause !== glance.cause && cause !== "NONE");
   return (
     <p
       className="mode-strip"
@@ -36,17 +35,24 @@ export function ModeStrip({ glance }: { readonly glance: Glance | null }) {
       <span>{text.meaning} </span>
       <span className="next-step">{text.next_step}</span>
       {gate !== null && <span className="gate"> {gate}</span>}
-      {locked && later.length > 0 && (
-        <span className="detail">
-          {" also seen: "}
-          {later.map((cause, index) => (
-            <Fragment key={cause}>
-              {index > 0 && ", "}
-              <CodeLink family="cause" code={cause} />
-            </Fragment>
-          ))}
-        </span>
-      )}
+      <AlsoSeen glance={glance} />
     </p>
+  );
+}
+
+/** What else locked, besides the first cause. */
+export function AlsoSeen({ glance }: { readonly glance: Glance }) {
+  const later = glance.causesSeen.filter((cause) => cause !== glance.cause && cause !== "NONE");
+  if (glance.mode !== "LOCKED" || later.length === 0) return null;
+  return (
+    <span className="detail">
+      {" also seen: "}
+      {later.map((cause, index) => (
+        <Fragment key={cause}>
+          {index > 0 && ", "}
+          <CodeLink family="cause" code={cause} />
+        </Fragment>
+      ))}
+    </span>
   );
 }
