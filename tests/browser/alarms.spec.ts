@@ -7,7 +7,7 @@ test("the worst alarm stands in a line of fixed height and in the tab's title, o
 }) => {
   await robot.unlockRobot();
   const header = page.locator("header.header");
-  const line = page.locator(".alarm-line");
+  const line = page.locator(".alarm-line[data-priority]");
   await expect(line).toHaveCount(0);
   await expect(page).toHaveTitle("neuro · READY · Interlock");
   const before = await header.boundingBox();
@@ -19,7 +19,7 @@ test("the worst alarm stands in a line of fixed height and in the tab's title, o
   await robot.open("Plots");
   await expect(line).toBeVisible();
   await robot.open("Robot");
-  await line.getByRole("button", { name: "Details" }).click();
+  await line.getByRole("button", { name: "1 alarm" }).click();
   const list = page.getByRole("region", { name: "Alarms", exact: true });
   await expect(list).toContainText("Priority high, a person's doing, since");
   await list.getByRole("button", { name: "Acknowledge ESTOP" }).click();
@@ -41,10 +41,10 @@ test("one event of the bus is one alarm, and two clicks lead out of it", async (
     for (const { slot } of motors) await stack.plant("card_power", { slot, on });
   };
   await power(false);
-  const line = page.locator(".alarm-line");
+  const line = page.locator(".alarm-line[data-priority]");
   await expect(line).toContainText("and 5 more: cards were lost together, so hardly by a cable of one.");
   await power(true);
-  await line.getByRole("button", { name: "Details" }).click();
+  await line.getByRole("button", { name: "1 alarm" }).click();
   const list = page.getByRole("region", { name: "Alarms", exact: true });
   await expect(list.getByRole("listitem")).toHaveCount(1);
   await list.getByRole("button", { name: "Clear and enable all" }).click();
@@ -55,7 +55,7 @@ test("one event of the bus is one alarm, and two clicks lead out of it", async (
 
 test("sound is asked for, kept on this computer and can be paused", async ({ page, robot }) => {
   await robot.button("Pull E-stop").click();
-  const open = page.locator(".alarm-line").getByRole("button", { name: "Details" });
+  const open = page.getByRole("button", { name: "1 alarm" });
   await open.click();
   const sound = page.getByLabel("Sound", { exact: true });
   await expect(sound).not.toBeChecked();
@@ -69,9 +69,9 @@ test("sound is asked for, kept on this computer and can be paused", async ({ pag
 test("an alarm and its list fit a phone", async ({ page, robot }) => {
   await page.setViewportSize({ width: 360, height: 740 });
   await robot.button("Pull E-stop").click();
-  const line = page.locator(".alarm-line");
+  const line = page.locator(".alarm-line[data-priority]");
   await expect(line).toBeVisible();
-  await line.getByRole("button", { name: "Details" }).click();
+  await line.getByRole("button", { name: "1 alarm" }).click();
   await expect(page.getByRole("button", { name: "Acknowledge ESTOP" })).toBeInViewport();
   const width = await page.evaluate(() => document.documentElement.scrollWidth);
   expect(width).toBeLessThanOrEqual(360);

@@ -59,3 +59,47 @@ test.describe("under fingers", () => {
     }
   });
 });
+
+/** Of what can be pressed or typed into, what something else lies over, or the page's edge cuts. */
+const unreachable = (page: Page): Promise<string[]> =>
+  page.evaluate(() => {
+    const controls = document.querySelectorAll(
+      "button, a[href], input, select, textarea, summary, [role=slider]",
+    );
+    return [...controls].flatMap((control) => {
+      if (!control.checkVisibility({ visibilityProperty: true })) return [];
+      control.scrollIntoView({ block: "center", inline: "nearest" });
+      const { left, top, width, height } = control.getBoundingClientRect();
+      const hit = document.elementFromPoint(left + width / 2, top + height / 2);
+      const own =
+        hit !== null &&
+        (control.contains(hit) || hit.contains(control) || hit.closest("label")?.contains(control));
+      const name = control.getAttribute("aria-label") ?? control.textContent;
+      return own
+        ? []
+        : [`${control.tagName} "${name}" at ${left},${top} under ${hit?.outerHTML.slice(0, 80)}`];
+    });
+  });
+
+for (const robotName of ["neuro", "prostate"] as const) {
+  test.describe(`on the ${robotName}, at every width`, () => {
+    test.use({ robotName });
+
+    test("no page scrolls sideways, and each control is hit at its centre", async ({ robot, page }) => {
+      test.setTimeout(300_000);
+      await robot.button("Pull E-stop").click();
+      await expect(page.locator(".alarm-line[data-priority=high]")).toBeVisible();
+      // 640: a laptop's 1280 at 200 %.
+      for (const width of [360, 640, 768, 1024, 1280, 1600, 3840]) {
+        await page.setViewportSize({ width, height: Math.max(740, Math.round(width * 0.6)) });
+        for (const name of Object.keys(knownBy) as PageName[]) {
+          await robot.open(name);
+          const where = `${name} at ${width}`;
+          await expect.poll(() => unreachable(page), { message: where, timeout: 20_000 }).toEqual([]);
+          const wide = await page.evaluate(() => document.documentElement.scrollWidth);
+          expect(wide, where).toBeLessThanOrEqual(width);
+        }
+      }
+    });
+  });
+}

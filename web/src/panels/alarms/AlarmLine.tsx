@@ -1,4 +1,5 @@
 import { useState } from "react";
+import type { Alarm } from "../../api/client";
 import { AlarmSign } from "../../design/AlarmSign";
 import { allowSound } from "../../state/announce";
 import { useConsole } from "../../state/store";
@@ -8,57 +9,52 @@ import { AlarmList } from "./AlarmList";
 import { AlarmWords, signs } from "./AlarmWords";
 import "./alarms.css";
 
-/** One line whose height never changes: the worst alarm or, where nobody has to act soon, what the mode means. A button shows every
- * alarm. Null: the state is unknown. */
+/** One line whose height never changes: the worst alarm or, where nobody has to act soon, what the mode means. A button, which is always
+ * there, shows every alarm. */
 export function AlarmLine({ glance }: { readonly glance: Glance | null }) {
   const alarms = useConsole((state) => state.alarms);
+  const loggedIn = useConsole((state) => state.login.phase === "in");
   const [shown, setShown] = useState(false);
-  const worst = alarms[0];
-  if (glance === null || worst === undefined) {
-    return (
-      <div className="alarm-line">
-        <ModeStrip glance={glance} />
-      </div>
-    );
-  }
-  const urgent = worst.priority !== "low";
-  const rest = urgent ? alarms.length - 1 : alarms.length;
+  const worst = glance === null ? undefined : alarms[0];
+  const urgent = worst !== undefined && worst.priority !== "low";
   const toggle = (): void => {
     allowSound();
     setShown(!shown);
   };
   return (
-    <div className="alarm-line" data-priority={worst.priority}>
+    <div className="alarm-line" data-priority={worst?.priority}>
       {urgent ? (
         <p role="alert" title={`${worst.text} ${worst.next_step}`}>
           <AlarmWords alarm={worst} />
-          <AlsoSeen glance={glance} />
+          {glance !== null && <AlsoSeen glance={glance} />}
         </p>
       ) : (
         <ModeStrip glance={glance} />
       )}
-      <button
-        type="button"
-        className="button"
-        aria-expanded={shown}
-        aria-controls="alarm-list"
-        aria-label={alarms.length === 1 ? "1 alarm" : `${alarms.length} alarms`}
-        onClick={toggle}
-      >
-        {urgent ? (
-          rest === 0 ? (
-            "Details"
-          ) : (
-            `+${rest} more`
-          )
-        ) : (
-          <>
-            <AlarmSign priority={null}>{signs.low}</AlarmSign> {worst.code}
-            {rest > 1 && ` +${rest - 1}`}
-          </>
-        )}
-      </button>
-      {shown && <AlarmList alarms={alarms} />}
+      {loggedIn && (
+        <button
+          type="button"
+          className={`button ${worst === undefined ? "quiet" : ""}`}
+          aria-expanded={shown}
+          aria-controls="alarm-list"
+          onClick={toggle}
+        >
+          <Count alarms={alarms} />
+        </button>
+      )}
+      {loggedIn && shown && <AlarmList alarms={alarms} />}
     </div>
+  );
+}
+
+function Count({ alarms }: { readonly alarms: readonly Alarm[] }) {
+  const worst = alarms[0];
+  if (worst === undefined) return "No alarm";
+  if (worst.priority !== "low") return alarms.length === 1 ? "1 alarm" : `${alarms.length} alarms`;
+  return (
+    <>
+      <AlarmSign priority={null}>{signs.low}</AlarmSign> {worst.code}
+      {alarms.length > 1 && ` +${alarms.length - 1}`}
+    </>
   );
 }

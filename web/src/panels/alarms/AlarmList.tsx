@@ -1,5 +1,5 @@
-import { useState } from "react";
-import type { Alarm } from "../../api/client";
+import { useEffect, useState } from "react";
+import { type Alarm, api } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { pauseSound, setNotices, setSound, wantsNotices, wantsSound } from "../../state/announce";
 import { acknowledgeAlarm, makeReady } from "../../state/commands";
@@ -29,6 +29,8 @@ export function AlarmList({ alarms }: { readonly alarms: readonly Alarm[] }) {
           <AlarmRow key={alarm.id} alarm={alarm} />
         ))}
       </ul>
+      {alarms.length === 0 && <p className="alarm-facts">Nothing asks anybody to act.</p>}
+      <Lately alarms={alarms} />
       <div className="alarm-tools">
         {isFaulted && (
           <CommandButton need="holder" onCommand={makeReady}>
@@ -73,6 +75,24 @@ function AlarmRow({ alarm }: { readonly alarm: Alarm }) {
         </span>
       )}
     </li>
+  );
+}
+
+/** The last ones that are over. */
+function Lately({ alarms }: { readonly alarms: readonly Alarm[] }) {
+  const [past, setPast] = useState<readonly Alarm[]>([]);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: asked again whenever one has begun or ended
+  useEffect(() => {
+    void api.alarms().then((answer) => answer.ok && setPast(answer.value.past.slice(0, 5)));
+  }, [alarms]);
+  if (past.length === 0) return null;
+  return (
+    <p className="alarm-facts">
+      Lately:{" "}
+      {past
+        .map(({ code, begun, ended }) => `${code} (${localTime(begun)} to ${localTime(ended ?? begun)})`)
+        .join(", ")}
+    </p>
   );
 }
 
