@@ -149,15 +149,18 @@ function linesOf(
   const axis = axes.find((each) => each.axis === name && each.unit === unit);
   const sampled = samples.axes.find(({ slot }) => slot === axis?.slot);
   if (axis === undefined || sampled === undefined) return [];
-  const planned = samples.plan.axes.find(({ slot }) => slot === axis.slot);
-  const timed = samples.plan.basis === "time" && planned !== undefined;
+  const { basis, times_s: planned_s, axes: plans } = samples.plan;
+  const planned = plans.find(({ slot }) => slot === axis.slot)?.positions_counts ?? [];
+  const rest = planned.slice(-1);
+  // Where the plan has ended the axis was to rest.
+  const rests_s = rest.map(() => Math.max(samples.times_s.at(-1) ?? 0, planned_s.at(-1) ?? 0));
   const line = (label: string, ink: Ink, times: readonly number[], counts: Column): Line => {
     const column = valuesAt(times, counts, timeS).map((each) => each && each * shownPerCount(axis));
     return { label: named ? `${label} #${id}` : label, ink, least: column, greatest: column };
   };
   return [
-    timed
-      ? line("planned", second ? "other-wish" : "wish", samples.plan.times_s, planned.positions_counts)
+    basis === "time"
+      ? line("planned", second ? "other-wish" : "wish", [...planned_s, ...rests_s], [...planned, ...rest])
       : line("commanded", second ? "other-wish" : "wish", samples.times_s, sampled.commanded_counts),
     line("actual", second ? "other" : "measured", samples.times_s, sampled.actual_counts),
   ];
