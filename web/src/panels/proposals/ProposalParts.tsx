@@ -96,13 +96,14 @@ interface RunLinkProps {
   readonly proposal: Proposal;
   /** Whether a run of it was found; its state alone does not tell of one that ended early. */
   readonly found?: boolean;
+  readonly className?: string;
 }
 
 /** Leads to the run of the same number; nothing where no axis is known to have moved. */
-export function RunLink({ proposal: { id, state }, found = false }: RunLinkProps) {
+export function RunLink({ proposal: { id, state }, found = false, className = "button" }: RunLinkProps) {
   if (!found && !ran.has(state)) return null;
   return (
-    <a className="button quiet" href={runHash(id)}>
+    <a className={className} href={runHash(id)}>
       Run {id}
     </a>
   );

@@ -78,7 +78,7 @@ function ProposalItem({
           >
             Details
           </a>
-          <RunLink proposal={proposal} />
+          <RunLink className="button quiet" proposal={proposal} />
           <ProposalCommands proposal={proposal} />
         </span>
       </span>

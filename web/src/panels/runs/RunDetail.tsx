@@ -14,8 +14,17 @@ import type { Span } from "../plots/ChartCanvas";
 import { SheetView } from "../plots/SheetView";
 import { Code, Fact } from "../proposals/ProposalDetail";
 import { StateChip, sourceWord } from "../proposals/ProposalParts";
-import { type Drawn, largestError, missCounts, placeWords, runSheet, sizeWords, titleOf } from "./runs";
-import { useRun, type WholeRun } from "./useRuns";
+import {
+  largestError,
+  missCounts,
+  placeWords,
+  runSheet,
+  sizeWords,
+  titleOf,
+  type WholeRun,
+  wholeSpan,
+} from "./runs";
+import { useRun } from "./useRuns";
 
 const CHART_PX = 120;
 const MOST_OF_NOTE = 1000;
@@ -113,7 +122,15 @@ function Facts({ run }: { readonly run: Run }) {
       {duration_s !== null && <Fact name="Duration">{duration_s.toFixed(1)} s</Fact>}
       <Fact name="Author">{author}</Fact>
       <Fact name="Source">{sourceWord(run)}</Fact>
-      <Fact name="Case">{run.case === null ? "none" : <a href="#/targeting">Case {run.case}</a>}</Fact>
+      <Fact name="Case">
+        {run.case === null ? (
+          "none"
+        ) : (
+          <a className="code-link" href="#/targeting">
+            Case {run.case}
+          </a>
+        )}
+      </Fact>
       <Fact name="Largest deviation">{largestError(run.axes) ?? "none: not planned in time"}</Fact>
       {aim !== null && (
         <Fact name="Misses the aim by">
@@ -224,10 +241,6 @@ function Comparing({ id, other, choices }: Omit<RunDetailProps, "onNote">) {
   );
 }
 
-function drawnOf({ run, samples }: WholeRun): Drawn {
-  return { id: run.id, axes: run.axes, samples };
-}
-
 interface ChartsProps {
   readonly run: WholeRun;
   readonly other: WholeRun | null;
@@ -237,11 +250,12 @@ function Charts({ run, other }: ChartsProps) {
   const [kept, keepHidden] = useKept("runs-hidden-axes", "");
   const hidden = useMemo(() => new Set(kept.split(" ")), [kept]);
   const [zoomed, setZoomed] = useState<Span | null>(null);
+  const [deviation, keepDeviation] = useKept("runs-deviation", "");
   const sheet = useMemo(
-    () => runSheet(drawnOf(run), other === null ? null : drawnOf(other), hidden),
-    [run, other, hidden],
+    () => runSheet(run, other, hidden, deviation !== ""),
+    [run, other, hidden, deviation],
   );
-  const whole = useMemo(() => ({ fromS: 0, toS: Math.max(sheet.timeS.at(-1) ?? 0, 0.1) }), [sheet]);
+  const whole = useMemo(() => wholeSpan(other === null ? [run] : [run, other]), [run, other]);
   const toggle = (axis: string): void => {
     const wanted = new Set(hidden);
     if (!wanted.delete(axis)) wanted.add(axis);
@@ -262,6 +276,14 @@ function Charts({ run, other }: ChartsProps) {
             {title}
           </button>
         ))}
+        <button
+          type="button"
+          className="button small"
+          aria-pressed={deviation !== ""}
+          onClick={() => keepDeviation(deviation === "" ? "shown" : "")}
+        >
+          Deviation
+        </button>
         {zoomed !== null && (
           <button type="button" className="button small" onClick={() => setZoomed(null)}>
             Whole run
@@ -281,9 +303,8 @@ function Charts({ run, other }: ChartsProps) {
         />
       )}
       <p className="plan-words">
-        Time is since the begin{other !== null && " of each run"}; pauses are not in the plan.
-        {basis !== "time" &&
-          ` Not planned in time${why === null ? "" : `: ${why}`} Drawn is what was commanded.`}{" "}
+        Time is since the begin{other !== null && " of each run"}; pauses are not in the plan.{" "}
+        {basis !== "time" && `Not planned in time: drawn is what was commanded. ${why ?? ""} `}
         Drag, or + and −, zoom; a double click shows all; arrows move the cursor.
       </p>
     </>

@@ -28,15 +28,12 @@ export default function RunsPage() {
   const shown = place?.id ?? listed.runs[0]?.id;
   return (
     <main className="sheet runs-page">
-      <div className="side">
-        <RunsPanel
-          listed={listed}
-          shown={shown}
-          filter={filter}
-          onFilter={(wanted) => keepFilter(new URLSearchParams({ ...wanted }).toString())}
-        />
-        {listed.retention !== null && <Retention retention={listed.retention} onSet={listed.refresh} />}
-      </div>
+      <RunsPanel
+        listed={listed}
+        shown={shown}
+        filter={filter}
+        onFilter={(wanted) => keepFilter(new URLSearchParams({ ...wanted }).toString())}
+      />
       {shown !== undefined && (
         <RunDetail
           key={shown}
@@ -46,6 +43,7 @@ export default function RunsPage() {
           onNote={listed.refresh}
         />
       )}
+      {listed.retention !== null && <Retention retention={listed.retention} onSet={listed.refresh} />}
     </main>
   );
 }
@@ -95,8 +93,15 @@ function Nothing({ filter, onFilter }: Pick<RunsPanelProps, "filter" | "onFilter
     );
   return (
     <p className="runs-words">
-      No motion was carried out yet. Propose one on the page <a href="#/robot">Robot</a> or{" "}
-      <a href="#/proposals">Proposals</a>, approve it and hold the pedal: it is kept here.
+      No motion was carried out yet. Propose one on the page{" "}
+      <a className="code-link" href="#/robot">
+        Robot
+      </a>{" "}
+      or{" "}
+      <a className="code-link" href="#/proposals">
+        Proposals
+      </a>
+      , approve it and hold the pedal: it is kept here.
     </p>
   );
 }

@@ -1,6 +1,7 @@
 /** Runs as they are read: which are shown, their largest errors in words, and what is drawn of them. Nothing here asks for anything. */
-import type { ListedRun, RunAxis, RunList, RunQuery, RunSamples } from "../../api/client";
+import type { ListedRun, Run, RunAxis, RunList, RunQuery, RunSamples } from "../../api/client";
 import { decimals, formatCounts, shownPerCount, unitName } from "../../units/units";
+import type { Span } from "../plots/ChartCanvas";
 import type { Chart, Ink, Line, Sheet } from "../plots/charts";
 import type { Column } from "../plots/rows";
 
@@ -110,37 +111,70 @@ export function missCounts({ target_counts, end_counts }: RunAxis): number | nul
   return target_counts === null || end_counts === null ? null : end_counts - target_counts;
 }
 
-/** What is drawn of a run. */
-export interface Drawn {
-  readonly id: number;
-  readonly axes: readonly RunAxis[];
+/** A run with its samples. */
+export interface WholeRun {
+  readonly run: Run;
   readonly samples: RunSamples;
 }
 
-/** A chart for each axis that is shown: where it was planned to be, or commanded where nothing was planned in time, and where it was. */
-export function runSheet(run: Drawn, other: Drawn | null, hidden: ReadonlySet<string>): Sheet {
+/** What is drawn of a run. */
+export interface Drawn {
+  readonly run: Pick<Run, "id" | "axes">;
+  readonly samples: RunSamples;
+}
+
+/**
+ * A chart for each axis that is shown: where it was planned to be, or commanded where nothing was planned in time, and
+ * where it was; and one of what lies between, where that is wanted.
+ */
+export function runSheet(
+  run: Drawn,
+  other: Drawn | null,
+  hidden: ReadonlySet<string>,
+  deviation: boolean,
+): Sheet {
   const drawn = other === null ? [run] : [run, other];
   const timeS = [
     ...new Set(drawn.flatMap(({ samples: { times_s, plan } }) => [...times_s, ...plan.times_s])),
   ].sort((a, b) => a - b);
-  const charts = run.axes
+  const charts = run.run.axes
     .filter(({ axis }) => !hidden.has(axis))
-    .map((axis): Chart => {
-      const shown = shownPerCount(axis);
-      return {
+    .flatMap((axis): Chart[] => {
+      const chart = {
         title: axis.title,
         unit: unitName(axis),
         decimals: decimals(axis),
-        leastSpan: 10 * Math.abs(shown),
-        lines: drawn.flatMap((each) => linesOf(each, axis, timeS, each === other, other !== null)),
+        leastSpan: 10 * Math.abs(shownPerCount(axis)),
       };
+      const pairs = drawn.map((each) => linesOf(each, axis, timeS, each === other, other !== null));
+      const positions = { ...chart, lines: pairs.flat() };
+      if (!deviation) return [positions];
+      return [positions, { ...chart, title: `${axis.title}: deviation`, lines: pairs.flatMap(between) }];
     });
   return { timeS, tick: [], charts };
 }
 
+/** What lies between the two lines of a run. */
+function between([wish, actual]: readonly Line[]): Line[] {
+  if (wish === undefined || actual === undefined) return [];
+  const column = actual.least.map((value, row) => {
+    const wanted = wish.least[row] ?? null;
+    return value === null || wanted === null ? null : value - wanted;
+  });
+  return [{ label: `${actual.label} less ${wish.label}`, ink: actual.ink, least: column, greatest: column }];
+}
+
+/** The times that are shown of themselves: of a run that is over as long as it was followed, else all of its plan. */
+export function wholeSpan(runs: readonly WholeRun[]): Span {
+  const ends = runs.map(({ run, samples: { times_s, plan } }) =>
+    Math.max(times_s.at(-1) ?? 0, run.outcome === "running" ? (plan.times_s.at(-1) ?? 0) : 0),
+  );
+  return { fromS: 0, toS: Math.max(...ends, 0.1) };
+}
+
 /** Lines of the axis of that name; none where the run did not move it. */
 function linesOf(
-  { id, axes, samples }: Drawn,
+  { run: { id, axes }, samples }: Drawn,
   { axis: name, unit }: RunAxis,
   timeS: readonly number[],
   second: boolean,

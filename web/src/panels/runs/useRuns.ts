@@ -1,8 +1,8 @@
 import { useCallback, useEffect, useMemo, useState } from "react";
-import { api, type Outcome, type Run, type RunRetention, type RunSamples } from "../../api/client";
+import { api, type Outcome, type RunRetention } from "../../api/client";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { type Asked, type Polled, usePolled } from "../../state/usePolled";
-import { type Filter, type Known, nothingKnown, queryOf, withNewest, withOlder } from "./runs";
+import { type Filter, type Known, nothingKnown, queryOf, type WholeRun, withNewest, withOlder } from "./runs";
 
 /** A run goes on for seconds, and the app keeps it every five. */
 const EVERY_MS = 2000;
@@ -47,12 +47,6 @@ export function useRuns(filter: Filter): ListedRuns {
     older,
     refresh,
   };
-}
-
-/** A run with its samples. */
-export interface WholeRun {
-  readonly run: Run;
-  readonly samples: RunSamples;
 }
 
 /** Asks for a run, and for its samples only when there are newer ones; the same object as long as nothing changed. */
