@@ -127,6 +127,14 @@ test("two runs are drawn over each other, with their numbers side by side, and a
     await expect(rows.nth(1), look).toContainText("#1");
     await page.reload();
   }
+  await run.getByRole("button", { name: "Deviation", pressed: false }).click();
+  const deviation = chart(run, "Probe rotation: deviation");
+  const { width } = (await deviation.boundingBox()) ?? { width: 0 };
+  await deviation.hover({ position: { x: width / 2, y: 40 } });
+  await expect(deviation).toHaveAttribute(
+    "aria-label",
+    /actual #2 less planned #2 -?\d.*, actual #1 less planned #1 -?\d/,
+  );
   await run.getByLabel("Compare with").selectOption("none");
   await expect(page).toHaveURL(/#\/runs\/2$/);
   await expect(run.getByRole("row", { name: /^Probe rotation/ })).toHaveCount(1);

@@ -167,7 +167,9 @@ interface NoteProps {
 
 /** What somebody wrote about it. What is typed stays until it is saved. */
 function Note({ run, onSaved }: NoteProps) {
-  const [draft, setDraft] = useKept(`run-note-${run.id}`, run.note);
+  // Empty: nothing was typed, so that what others write is shown.
+  const [typed, keepTyped] = useKept(`run-note-${run.id}`, "");
+  const draft = typed === "" ? run.note : typed.slice(1);
   const [notice, setNotice] = useState<Notice | null>(null);
   const reason = useReason("engineer");
   const hintId = useId();
@@ -181,8 +183,8 @@ function Note({ run, onSaved }: NoteProps) {
     const answer = await api.setRunNote(run.id, draft.trim());
     setNotice(answer.ok ? null : noticeOfProblem(answer.problem));
     if (!answer.ok) return;
-    setDraft(answer.value.note);
     await onSaved();
+    keepTyped("");
   };
   return (
     <div className="run-note">
@@ -194,7 +196,7 @@ function Note({ run, onSaved }: NoteProps) {
           maxLength={MOST_OF_NOTE}
           autoComplete="off"
           aria-describedby={hintId}
-          onChange={({ target }) => setDraft(target.value)}
+          onChange={({ target }) => keepTyped(`=${target.value}`)}
         />
       </label>
       <CommandButton
