@@ -71,13 +71,13 @@ test("the page of the runs, two of them over each other", async ({ robot, page }
   await axis.enable();
   await axis.setHome();
   for (const [id, last] of [
-    [1, 0.3],
-    [2, 0.35],
+    [1, 0.1],
+    [2, 0.15],
   ]) {
     await page.evaluate(async (rows) => {
       await fetch("/api/trajectory", { method: "PUT", body: rows });
       await fetch("/api/proposals", { method: "POST", body: '{"kind":"trajectory"}' });
-    }, `time [s],probe_rotation [rad]\n0,0.05\n1,0.2\n2,${last}\n3,0.05\n`);
+    }, `time [s],probe_rotation [rad]\n0,0.05\n1,0.2\n2,${last}\n`);
     await robot.approve(id ?? 0);
     await expect(robot.proposal(id ?? 0)).toContainText("approved");
     await robot.pressPedal();

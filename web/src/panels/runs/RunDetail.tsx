@@ -26,7 +26,8 @@ import {
 } from "./runs";
 import { useRun } from "./useRuns";
 
-const CHART_PX = 120;
+/** One or two charts have room to be tall. */
+const [TALL_PX, LOW_PX, MOST_TALL] = [220, 120, 2];
 const MOST_OF_NOTE = 1000;
 
 interface RunDetailProps {
@@ -299,7 +300,7 @@ function Charts({ run, other }: ChartsProps) {
           name="run"
           sheet={sheet}
           span={zoomed ?? whole}
-          height={CHART_PX}
+          height={sheet.charts.length > MOST_TALL ? LOW_PX : TALL_PX}
           onZoom={setZoomed}
           onReset={() => setZoomed(null)}
         />
