@@ -18,10 +18,6 @@ def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     return "\n".join("| " + " | ".join(cell(one) for one in line) + " |" for line in lines) + "\n"
 
 
-def name_of(reference: str) -> str:
-    return reference.rpartition("/")[2]
-
-
 def type_of(schema: Mapping) -> str:
     """A schema in a few words; a named one, or the part of one, by its name, which leads to it."""
     if "$ref" in schema:

@@ -255,6 +255,15 @@ test("a store that does not answer is told, with what is known left on the page"
   await expect(robot.panel("Runs").getByRole("alert")).toHaveCount(0);
 });
 
+test("a link to a run that is not kept says so, and the list stays", async ({ robot, page }) => {
+  await ready(robot);
+  await carryOut(robot, 1);
+  await page.goto(new URL("#/runs/99", page.url()).href);
+  await expect(robot.panel("Run 99").getByRole("alert")).toContainText(/NOT_FOUND: .*run 99/);
+  await line(robot, 1).getByRole("link").click();
+  await expect(robot.panel("Run 1")).toContainText("done");
+});
+
 test("older runs follow the newest ones", async ({ robot, page }) => {
   const made = (id: number, axes: unknown): object => ({
     ...{ id, case: null, kind: "move", mode: "manual", author: "ann", source: "console", aim: null },
