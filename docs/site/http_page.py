@@ -18,15 +18,12 @@ def table(head: Sequence[str], rows: Sequence[Sequence[object]]) -> str:
     return "\n".join("| " + " | ".join(cell(one) for one in line) + " |" for line in lines) + "\n"
 
 
-def name_of(reference: str) -> str:
-    return reference.rpartition("/")[2]
-
-
 def type_of(schema: Mapping) -> str:
-    """A schema in a few words; a named one by its name, which leads to it."""
+    """A schema in a few words; a named one, or the part of one, by its name, which leads to it."""
     if "$ref" in schema:
-        name = name_of(schema["$ref"])
-        return f"[{name}](#schema-{name.lower()})"
+        name, *part = schema["$ref"].split("/")[3:]
+        link = f"[{name}](#schema-{name.lower()})"
+        return f"`{part[-1]}` of {link}" if part else link
     for joined, word in (("oneOf", " or "), ("anyOf", " or "), ("allOf", " and ")):
         if joined in schema:
             return word.join(type_of(one) for one in schema[joined])

@@ -13,6 +13,7 @@ CAPTIONS = {
     "prostate-workflow": "The same with a biopsy",
     "targeting": "Registration, entry and target, and what they ask of each axis",
     "proposals": "Every proposal, one of them with its checks, its way and what became of it",
+    "runs": "Every motion that was carried out, one of them beside another: planned, actual, and in numbers",
     "plots": "Position, error, velocity and drive of an axis over time, and the times of the loop",
     "3d": "The robot in its workspace",
     "codes": "The codes",

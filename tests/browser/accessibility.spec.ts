@@ -191,6 +191,10 @@ test("proposals, refusals and a stalled axis", async ({ robot, page }) => {
   await robot.pressPedal();
   await expect(axis.row.getByRole("alert").filter({ hasText: "STALL" })).toBeVisible();
   await expectNoViolation(page, "stalled", untouched);
+  await robot.open("Runs");
+  await expect(robot.panel("Run 2").getByRole("figure", { name: "Probe rotation" })).toBeVisible();
+  await robot.panel("Retention").getByLabel("Runs").fill("19");
+  await expectNoViolation(page, "Runs");
 });
 
 test("alarms and questions", async ({ robot, page }) => {

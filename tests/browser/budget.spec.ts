@@ -10,7 +10,7 @@ test("the first load is light, and asks nothing of any other computer", async ({
   const scripts = files.filter((file) => file.endsWith(".js"));
   expect(scripts.some((file) => file.startsWith("/assets/index-"))).toBe(true);
   expect(
-    scripts.filter((file) => /\/(View|Plots|Proposals|Targeting|Tuning|Workflow)Page-/.test(file)),
+    scripts.filter((file) => /\/(View|Plots|Proposals|Runs|Targeting|Tuning|Workflow)Page-/.test(file)),
   ).toEqual([]);
   expect(files.filter((file) => file.endsWith(".wasm"))).toHaveLength(1);
   expect(foreign).toEqual([]);

@@ -119,6 +119,7 @@ export const knownBy = {
   Workflow: "Workflow",
   Targeting: "Registration",
   Proposals: "All proposals",
+  Runs: "Runs",
   Plots: "Capture",
   Tuning: "Measure an axis",
   "3D": "3D",

@@ -158,7 +158,7 @@ test("the E-stop locks with its cause until it is released and unlocked, and not
   await robot.expectMode("LOCKED");
   await expect(robot.estop).toContainText("PULLED");
   const signs = page.getByRole("banner").locator(".alarm-sign");
-  await expect(signs.and(page.locator('[data-priority="high"]'))).toHaveCount(2);
+  await expect(signs.and(page.locator('[data-priority="high"]'))).toHaveCount(3);
   await expect(
     page.getByRole("banner").getByText("The E-stop was pulled, or its loop is broken."),
   ).toBeVisible();

@@ -4,7 +4,7 @@ import { type Clock, type RobotName, Stack } from "./stack";
 
 /** What Chromium reports on its console by design: refused requests, an app that is gone or has no kernel yet, a network that is cut, a slow picture. */
 const expectedComplaint =
-  /status of (401|403|409|422|429|503)|ERR_CONNECTION_|ERR_INTERNET_DISCONNECTED|GPU stall due to ReadPixels/;
+  /status of (401|403|404|409|422|429|503)|ERR_CONNECTION_|ERR_INTERNET_DISCONNECTED|GPU stall due to ReadPixels/;
 
 interface Fixtures {
   robotName: RobotName;

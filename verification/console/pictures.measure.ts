@@ -65,6 +65,30 @@ test("the robot's page at work, and the sheets", async ({ robot, page }) => {
   }
 });
 
+test("the page of the runs, two of them over each other", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  const axis = robot.axis("Probe rotation");
+  await axis.enable();
+  await axis.setHome();
+  for (const [id, last] of [
+    [1, 0.1],
+    [2, 0.15],
+  ]) {
+    await page.evaluate(async (rows) => {
+      await fetch("/api/trajectory", { method: "PUT", body: rows });
+      await fetch("/api/proposals", { method: "POST", body: '{"kind":"trajectory"}' });
+    }, `time [s],probe_rotation [rad]\n0,0.05\n1,0.2\n2,${last}\n`);
+    await robot.approve(id ?? 0);
+    await expect(robot.proposal(id ?? 0)).toContainText("approved");
+    await robot.pressPedal();
+    await expect(robot.proposal(id ?? 0)).toContainText("done");
+    await robot.releasePedal();
+  }
+  await page.goto(new URL("#/runs/2/1", page.url()).href);
+  await expect(robot.panel("Run 2").getByRole("img")).toHaveAttribute("aria-label", /actual #1 /);
+  await take(page, "runs");
+});
+
 test("the page of a target that is set", async ({ robot, page }) => {
   await robot.openCase("phantom 12");
   const [entry_point, target_point] = [

@@ -13,6 +13,7 @@ import { useConsole } from "./state/store";
 /** Loaded with the first look at them: drawing takes more code than all the rest. */
 const PlotsPage = lazy(() => import("./panels/plots/PlotsPage"));
 const ProposalsPage = lazy(() => import("./panels/proposals/ProposalsPage"));
+const RunsPage = lazy(() => import("./panels/runs/RunsPage"));
 const TuningPage = lazy(() => import("./panels/tuning/TuningPage"));
 const ViewPage = lazy(() => import("./panels/view/ViewPage"));
 const TargetingPage = lazy(() => import("./panels/targeting/TargetingPage"));
@@ -38,6 +39,7 @@ function Page() {
   if (route === "workflow") return <Loaded of={WorkflowPage} />;
   if (route === "targeting") return <Loaded of={TargetingPage} />;
   if (route === "proposals") return <Loaded of={ProposalsPage} />;
+  if (route === "runs") return <Loaded of={RunsPage} />;
   if (route === "plots") return <Loaded of={PlotsPage} />;
   if (route === "tuning") return <Loaded of={TuningPage} />;
   if (route === "view") return <Loaded of={ViewPage} />;

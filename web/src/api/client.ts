@@ -14,6 +14,13 @@ export type ProposalPlan = Schemas["ProposalPlan"];
 export type ProposalGhost = Schemas["ProposalGhost"];
 export type AxisProfile = Schemas["AxisProfile"];
 export type LoadedTrajectory = Schemas["LoadedTrajectory"];
+export type ListedRun = Schemas["ListedRun"];
+export type Run = Schemas["Run"];
+export type RunAxis = Schemas["RunAxis"];
+export type RunList = Schemas["RunList"];
+export type RunSamples = Schemas["RunSamples"];
+export type RunRetention = Schemas["RunRetention"];
+export type RunQuery = NonNullable<paths["/api/runs"]["get"]["parameters"]["query"]>;
 export type BodyPart = Schemas["BodyPart"];
 export type Reach = Schemas["Reach"];
 export type Status = Schemas["Status"];
@@ -215,6 +222,16 @@ export const api = {
   robotFile: (id: number) =>
     read(() => http.GET("/api/proposals/{id}/robot-file", { params: { path: { id } } })),
   abort: (id: number) => act(() => http.POST("/api/proposals/{id}/abort", { params: { path: { id } } })),
+  runs: (query: RunQuery) => read(() => http.GET("/api/runs", { params: { query } })),
+  run: (id: number) => read(() => http.GET("/api/runs/{id}", { params: { path: { id } } })),
+  runSamples: (id: number) =>
+    read(() => slowHttp.GET("/api/runs/{id}/samples", { params: { path: { id } } })),
+  runTable: (id: number) =>
+    read(() => slowHttp.GET("/api/runs/{id}/csv", { params: { path: { id } }, parseAs: "text" })),
+  setRunNote: (id: number, text: string) =>
+    act(() => http.PUT("/api/runs/{id}/note", { params: { path: { id } }, body: { text } })),
+  setRunRetention: (count: number, days: number) =>
+    act(() => http.PUT("/api/runs/retention", { body: { count, days } })),
   trajectory: () => read(() => http.GET("/api/trajectory")),
   loadTrajectory: (text: string, timing: "as_written" | "slowed_to_fit") =>
     act(() =>

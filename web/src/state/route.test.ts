@@ -1,5 +1,15 @@
 import { describe, expect, it } from "vitest";
-import { codeHash, codeOf, motionHash, motionOf, proposalHash, proposalOf, routeOf } from "./route";
+import {
+  codeHash,
+  codeOf,
+  motionHash,
+  motionOf,
+  proposalHash,
+  proposalOf,
+  routeOf,
+  runHash,
+  runOf,
+} from "./route";
 
 describe("routeOf", () => {
   it.each([
@@ -22,6 +32,10 @@ describe("routeOf", () => {
     ["#/proposals/x", "robot"],
     ["#/proposals/7/8", "robot"],
     ["#/plots/7", "robot"],
+    ["#/runs", "runs"],
+    ["#/runs/7", "runs"],
+    ["#/runs/7/5", "runs"],
+    ["#/runs/x", "robot"],
     ["#/codes", "codes"],
     ["#/codes/verdict/RANGE", "codes"],
   ])("%j is the page %s", (hash, route) => {
@@ -65,6 +79,20 @@ describe("motionOf", () => {
     "finds none in %j",
     (hash) => {
       expect(motionOf(hash)).toBeNull();
+    },
+  );
+});
+
+describe("runOf", () => {
+  it("finds the run that a link leads to, and the one beside it", () => {
+    expect(runOf(runHash(7))).toEqual({ id: 7, other: null });
+    expect(runOf(runHash(7, 5))).toEqual({ id: 7, other: 5 });
+  });
+
+  it.each(["#/runs", "#/runs/0", "#/runs/7/x", "#/runs/7/7", "#/runs/7/5/3", "#/proposals/7"])(
+    "finds none in %j",
+    (hash) => {
+      expect(runOf(hash)).toBeNull();
     },
   );
 });

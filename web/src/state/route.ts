@@ -7,6 +7,7 @@ export const routes = [
   "workflow",
   "targeting",
   "proposals",
+  "runs",
   "plots",
   "tuning",
   "view",
@@ -30,13 +31,17 @@ type ProposalRoute = "proposals" | "view";
 export const motionKinds = ["coordinated", "ablation"] as const;
 export type MotionKind = (typeof motionKinds)[number];
 
-/** The page that a hash names; the robot for every other. Codes and proposals alone have places within. */
+/** The page that a hash names; the robot for every other. Codes, proposals and runs alone have places within. */
 export function routeOf(hash: string): Route {
   const [name, ...place] = segments(hash);
   const named = routes.find((route) => route === name);
   if (named === undefined) return "robot";
   const known =
-    place.length === 0 || named === "codes" || proposalOf(hash) !== null || motionOf(hash) !== null;
+    place.length === 0 ||
+    named === "codes" ||
+    proposalOf(hash) !== null ||
+    motionOf(hash) !== null ||
+    runOf(hash) !== null;
   return known ? named : "robot";
 }
 
@@ -44,12 +49,32 @@ export function routeOf(hash: string): Route {
 export function proposalOf(hash: string): number | null {
   const [page, id, ...rest] = segments(hash);
   const named = page === "proposals" || page === "view";
-  return named && rest.length === 0 && id !== undefined && /^[1-9]\d{0,9}$/.test(id) ? Number(id) : null;
+  return named && rest.length === 0 ? numberOf(id) : null;
 }
 
 /** The hash that leads to a proposal. */
 export function proposalHash(page: ProposalRoute, id: number): string {
   return `#/${page}/${id}`;
+}
+
+/** A run that is looked at, and the one that it is compared with. */
+export interface RunPlace {
+  readonly id: number;
+  readonly other: number | null;
+}
+
+/** The run that a hash leads to; null when it names none. */
+export function runOf(hash: string): RunPlace | null {
+  const [page, first, second, ...rest] = segments(hash);
+  const id = numberOf(first);
+  if (page !== "runs" || id === null || rest.length > 0) return null;
+  const other = numberOf(second);
+  return (second === undefined) === (other === null) && other !== id ? { id, other } : null;
+}
+
+/** The hash that leads to a run, beside another one where that is named. */
+export function runHash(id: number, other: number | null = null): string {
+  return `#/runs/${id}${other === null ? "" : `/${other}`}`;
 }
 
 /** The kind of motion whose form a hash leads to; null when it names none. */
@@ -74,6 +99,10 @@ export function codeOf(hash: string): CodePlace | null {
 /** The hash that leads to a code. */
 export function codeHash(family: Family, code: string): string {
   return `#/codes/${family}/${code}`;
+}
+
+function numberOf(text: string | undefined): number | null {
+  return text !== undefined && /^[1-9]\d{0,9}$/.test(text) ? Number(text) : null;
 }
 
 function segments(hash: string): string[] {
@@ -110,4 +139,9 @@ export function useProposalPlace(): number | null {
 /** The kind of motion whose form was asked for; null when none was. */
 export function useMotionPlace(): MotionKind | null {
   return motionOf(useHash());
+}
+
+/** The run that the page is about; null when it is about none in particular. */
+export function useRunPlace(): RunPlace | null {
+  return runOf(useHash());
 }

@@ -6,6 +6,7 @@ const pages: readonly { readonly route: Route; readonly title: string; readonly 
   { route: "workflow", title: "Workflow", adminOnly: false },
   { route: "targeting", title: "Targeting", adminOnly: false },
   { route: "proposals", title: "Proposals", adminOnly: false },
+  { route: "runs", title: "Runs", adminOnly: false },
   { route: "plots", title: "Plots", adminOnly: false },
   { route: "tuning", title: "Tuning", adminOnly: false },
   { route: "view", title: "3D", adminOnly: false },

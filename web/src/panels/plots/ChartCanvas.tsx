@@ -93,7 +93,7 @@ export function ChartCanvas(props: ChartCanvasProps) {
         <span className="chart-unit">{chart.unit}</span>
         {values.map(({ line, text }) => (
           <span key={line.label} className="chart-value" data-ink={line.ink}>
-            <i aria-hidden="true">{line.ink === "wish" ? "╌" : "—"}</i> {line.label} <b>{text}</b>
+            <i aria-hidden="true">{isDashed(line) ? "╌" : "—"}</i> {line.label} <b>{text}</b>
           </span>
         ))}
       </figcaption>
@@ -115,8 +115,16 @@ export function ChartCanvas(props: ChartCanvasProps) {
 }
 
 /** What the style sheet says of the colours on the canvas. */
-const samples = ["measured", "measured-band", "wish", "wish-band", "grid", "words"] as const;
+const samples = [
+  ...(["measured", "measured-band", "wish", "wish-band", "other", "other-band"] as const),
+  ...(["other-wish", "other-wish-band", "grid", "words"] as const),
+] as const;
 type Sample = (typeof samples)[number];
+
+/** What was wished is dashed, so that it is told from what was measured without its colour. */
+function isDashed({ ink }: Line): boolean {
+  return ink === "wish" || ink === "other-wish";
+}
 
 interface Calls {
   readonly onCursor: (row: number | null) => void;
@@ -148,7 +156,7 @@ function optionsOf(
       stroke,
       width: 1.25,
       points: { show: false },
-      ...(line.ink === "wish" ? { dash: [5, 4] } : {}),
+      ...(isDashed(line) ? { dash: [5, 4] } : {}),
     };
     return [look, look];
   });

@@ -3,8 +3,8 @@ import type { Capture, Motor } from "../../api/client";
 import { shownPerCount, unitName } from "../../units/units";
 import type { Column, Quantity, Rows } from "./rows";
 
-/** The operator's wish is blue wherever it appears; what was measured has the colour of the text. */
-export type Ink = "measured" | "wish";
+/** The operator's wish is blue wherever it appears; what was measured has the colour of the text. `other`: of another run. */
+export type Ink = "measured" | "wish" | "other" | "other-wish";
 
 export interface Line {
   readonly label: string;

@@ -1,4 +1,5 @@
-import type { Motor, Proposal, ProposalPlan } from "../../api/client";
+import { useEffect, useState } from "react";
+import { api, type Motor, type Proposal, type ProposalPlan } from "../../api/client";
 import { CodeLink } from "../../design/CodeLink";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
@@ -9,7 +10,7 @@ import { useConsole } from "../../state/store";
 import { localDate, localTime } from "../../units/time";
 import { errorBudgetWords } from "./errorBudget";
 import { ProfilePlots } from "./ProfilePlots";
-import { ProposalCommands, StateChip, sourceWord, WaitingWish, Wish } from "./ProposalParts";
+import { ProposalCommands, RunLink, StateChip, sourceWord, WaitingWish, Wish } from "./ProposalParts";
 import { progressOf } from "./progress";
 import { usePlan } from "./usePlan";
 
@@ -17,8 +18,10 @@ import { usePlan } from "./usePlan";
 export function ProposalDetail({ proposal }: { readonly proposal: Proposal }) {
   const motor = useConsole((state) => state.motors.find(({ slot }) => slot === proposal.slot));
   const { plan, notice } = usePlan(proposal);
+  const found = useFoundRun(proposal);
   const tools = (
     <>
+      <RunLink proposal={proposal} found={found} />
       <a className="button" href={proposalHash("view", proposal.id)}>
         Show in 3D
       </a>
@@ -52,6 +55,22 @@ export function ProposalDetail({ proposal }: { readonly proposal: Proposal }) {
       )}
     </Panel>
   );
+}
+
+/** Whether the app keeps a run of the proposal; asked anew with each of its states. */
+function useFoundRun({ id, state }: Proposal): boolean {
+  const [found, setFound] = useState(false);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: a run begins when its proposal has another state.
+  useEffect(() => {
+    let gone = false;
+    void api.runs({ before: id + 1, count: 1 }).then((answer) => {
+      if (!gone) setFound(answer.ok && answer.value.runs[0]?.id === id);
+    });
+    return () => {
+      gone = true;
+    };
+  }, [id, state]);
+  return found;
 }
 
 interface FactsProps {
@@ -101,7 +120,8 @@ function Facts({ proposal, plan }: FactsProps) {
   );
 }
 
-function Fact({ name, children }: { readonly name: string; readonly children: React.ReactNode }) {
+/** One line of what is known, by its name. */
+export function Fact({ name, children }: { readonly name: string; readonly children: React.ReactNode }) {
   return (
     <div>
       <dt>{name}</dt>
@@ -117,7 +137,7 @@ function nextStepOf(verdict: string, outcome: string): string {
 }
 
 /** Verdicts lead to their page; codes of the app alone have none. */
-function Code({ code }: { readonly code: string }) {
+export function Code({ code }: { readonly code: string }) {
   return isVerdict(code) ? <CodeLink family="verdict" code={code} /> : <strong>{code}</strong>;
 }
 

@@ -1,12 +1,13 @@
-import type { Motor, Proposal } from "../../api/client";
+import type { ListedRun, Motor, Proposal } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { WishForetelling } from "../../kernel/WishForetelling";
 import { abort, approve, confirmInsertion, reject } from "../../state/commands";
 import { isOpen, nextWishes } from "../../state/proposals";
+import { runHash } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { formatCounts } from "../../units/units";
 
-type State = Proposal["state"];
+type State = Proposal["state"] | ListedRun["outcome"];
 
 const looks: Record<State, { readonly shape: string; readonly tone: string }> = {
   drafted: { shape: "·", tone: "" },
@@ -18,6 +19,8 @@ const looks: Record<State, { readonly shape: string; readonly tone: string }> = 
   refused: { shape: "✕", tone: "medium" },
   aborted: { shape: "■", tone: "" },
   expired: { shape: "◌", tone: "" },
+  running: { shape: "▶", tone: "wish" },
+  interrupted: { shape: "!", tone: "medium" },
 };
 
 /** Where it stands, by word and shape. */
@@ -38,8 +41,8 @@ const sources: Record<Proposal["source"], string> = {
 };
 
 /** Where it came from, as people write it. */
-export function sourceWord(proposal: Proposal): string {
-  return sources[proposal.source];
+export function sourceWord({ source }: Pick<Proposal, "source">): string {
+  return sources[source];
 }
 
 /** Who proposed it, from where, and in which case. */
@@ -84,6 +87,25 @@ export function ProposalCommands({ proposal }: { readonly proposal: Proposal }) 
         Reject
       </CommandButton>
     </>
+  );
+}
+
+const ran: ReadonlySet<State> = new Set(["executing", "paused", "done"]);
+
+interface RunLinkProps {
+  readonly proposal: Proposal;
+  /** Whether a run of it was found; its state alone does not tell of one that ended early. */
+  readonly found?: boolean;
+  readonly className?: string;
+}
+
+/** Leads to the run of the same number; nothing where no axis is known to have moved. */
+export function RunLink({ proposal: { id, state }, found = false, className = "button" }: RunLinkProps) {
+  if (!found && !ran.has(state)) return null;
+  return (
+    <a className={className} href={runHash(id)}>
+      Run {id}
+    </a>
   );
 }
 

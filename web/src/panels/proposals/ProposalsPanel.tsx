@@ -7,7 +7,7 @@ import { proposalHash } from "../../state/route";
 import { useConsole } from "../../state/store";
 import { localTime } from "../../units/time";
 import { FirstSteps, FirstStepsButton } from "../first/FirstSteps";
-import { originWords, ProposalCommands, StateChip, WaitingWish, Wish } from "./ProposalParts";
+import { originWords, ProposalCommands, RunLink, StateChip, WaitingWish, Wish } from "./ProposalParts";
 import "./proposals.css";
 
 const MOST_SHOWN = 20;
@@ -78,6 +78,7 @@ function ProposalItem({
           >
             Details
           </a>
+          <RunLink className="button quiet" proposal={proposal} />
           <ProposalCommands proposal={proposal} />
         </span>
       </span>
