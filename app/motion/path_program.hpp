@@ -23,6 +23,9 @@ struct MoveLeg {
   double dwell_s = 0.0; /**< rest at the targets */
   /** It begins only once somebody has looked at what was reached before, and confirmed it. */
   bool needs_confirmation = false;
+  /** It leaves its axes below the targets of the leg behind it, on whose way their tools' play is taken up.
+   */
+  bool takes_up_play = false;
 };
 
 /** First to where the trajectory begins, as a `MoveLeg` would, then along it in time. */

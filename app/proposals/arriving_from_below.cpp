@@ -11,16 +11,20 @@ PathProgram arriving_from_below(const Robot& robot, PathProgram program) {
   for (PathLeg& leg : program.legs) {
     if (auto* move = std::get_if<MoveLeg>(&leg)) {
       MoveLeg below;
+      below.takes_up_play = true;
+      bool needed = false;
       for (const AxisCounts& target : move->targets) {
         const Axis& axis = *robot.at_slot(target.slot);
         const std::int32_t from = axis.take_up_counts(target.counts).value_or(target.counts);
         const auto left = known.find(target.slot);
-        if (from != target.counts && (left == known.end() || left->second > from)) {
+        needed |= from != target.counts && (left == known.end() || left->second > from);
+        // All of them together; what goes into the patient goes once the others are there.
+        if (from != target.counts || &axis != robot.with_role("insertion")) {
           below.targets.push_back({target.slot, from});
         }
         known[target.slot] = target.counts;
       }
-      if (!below.targets.empty()) {
+      if (needed) {
         below.needs_confirmation = std::exchange(move->needs_confirmation, false);
         whole.legs.emplace_back(std::move(below));
       }

@@ -41,9 +41,10 @@ std::optional<MoveLeg> ablation_leg(const Robot& robot, const AblationStep& step
 PathProgram pose_program(const Robot& robot, const Alignment& alignment, bool insert);
 
 /**
- * The program with a leg before each to positions, in which its axes go to where their tools' play is taken
- * up on the way (`Axis::take_up_counts`): then each arrives from below, where kinematics hold. An axis that
- * the leg before leaves below that needs none.
+ * The program with a leg before each to positions, in which its axes go together to where their tools' play
+ * is taken up on the way (`Axis::take_up_counts`): then each arrives from below, where kinematics hold. An
+ * axis without play goes to its target with them; but the insertion, which goes with the last of them. No
+ * such leg where the leg before leaves all of them below.
  */
 PathProgram arriving_from_below(const Robot& robot, PathProgram program);
 

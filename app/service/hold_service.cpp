@@ -16,13 +16,13 @@ void HoldService::use_gate(bool in_use) {
 
 tl::expected<void, Problem> HoldService::signal(const HoldSource& source, const igtl::GateSignal& signal,
                                                 std::chrono::steady_clock::time_point came) {
-  BreathingGate& gate = holds_.gate;
   const Moment now = control_.view().moment(came);
-  const bool is_valid = gate.signal.held() && !gate.signal.overdue(now);
-  if (signal.open && is_valid && source_ && !source_->is(source)) {
+  std::erase_if(given_,
+                [&](const Given& each) { return each.signal.overdue(now) || each.source.is(source); });
+  if (signal.open && !given_.empty()) {
     return fail({.status = Status::conflict,
                  .code = "GATE_SOURCE",
-                 .detail = "The breathing gate takes its signal from " + source_->name + ".",
+                 .detail = "The breathing gate takes its signal from " + given_.back().source.name + ".",
                  .expected = "one source",
                  .next_step = "Stop one of both sources."});
   }
@@ -30,9 +30,10 @@ tl::expected<void, Problem> HoldService::signal(const HoldSource& source, const 
     spdlog::info("the signal of the breathing gate comes from {}", source.name);
   }
   source_ = source;
-  gate.open = signal.open;
-  gate.signal = DeadmanTimer(signal.validity);
-  gate.signal.hold(now);
+  holds_.gate.open = signal.open;
+  holds_.gate.signal = DeadmanTimer(signal.validity);
+  holds_.gate.signal.hold(now);
+  given_.push_back({source, holds_.gate.signal});
   publish();
   return {};
 }
@@ -62,6 +63,7 @@ void HoldService::end_scan() {
 }
 
 void HoldService::end_source(const HoldSource& source) {
+  std::erase_if(given_, [&](const Given& each) { return each.source.is(source); });
   if (source_ && source_->is(source)) {
     spdlog::warn("the source of the breathing gate's signal has ended: {}", source_->name);
     source_.reset();

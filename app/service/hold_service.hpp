@@ -12,6 +12,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "igtl/command.hpp"
 #include "motion/outside_holds.hpp"
@@ -47,8 +48,8 @@ class HoldService {
 
   /**
    * A signal of the breathing gate, valid from when it came. It is kept whether or not the gate is in use.
-   * 409 GATE_SOURCE for one that opens it, while the newest one of another source is valid; whoever says
-   * "hold" is believed.
+   * 409 GATE_SOURCE for one that opens it, while a signal of another source is valid, whatever that says;
+   * whoever says "hold" is believed.
    */
   tl::expected<void, Problem> signal(const HoldSource& source, const igtl::GateSignal& signal,
                                      std::chrono::steady_clock::time_point came);
@@ -89,8 +90,15 @@ class HoldService {
     SteadyTime since;
   };
 
+  /** The newest signal of a source. */
+  struct Given {
+    HoldSource source;
+    DeadmanTimer signal;
+  };
+
   ControlClient& control_;
   OutsideHolds holds_;
+  std::vector<Given> given_;         /**< one of each source while it is valid, the newest last */
   std::optional<HoldSource> source_; /**< of the gate's newest signal, until it ends */
   Scan scan_;                        /**< while `scanning` */
 };

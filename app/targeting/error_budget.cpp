@@ -18,6 +18,8 @@ using Eigen::Vector3d;
 constexpr double chi_square_95 = 7.814727903251179;
 /** Root mean square distance of the fiducials from the line that they are nearest to. */
 constexpr double least_spread_mm = 1.0;
+/** Standard deviation of a turn of the registration, beyond which its second order does not describe it. */
+constexpr double largest_turn_rad = 0.25;
 constexpr double fewest_fiducials = 3.0;
 constexpr double most_fiducials = 1e6;
 
@@ -34,7 +36,8 @@ double play_counts2(const Axis& axis, double position) {
   const double play = axis.mechanics.tool_play_counts.value_or(0);
   const auto counts = axis.to_counts(position);
   const bool taken_up = counts && axis.take_up_counts(*counts);
-  return squared(taken_up ? std::min(play, axis.deadband_counts + 0.5) : play) / 3.0;
+  // From above the tool is as far off as it can be, each time: no chance makes it less.
+  return taken_up ? squared(std::min(play, axis.deadband_counts + 0.5)) / 3.0 : squared(play);
 }
 
 /** Of a point that moves with the axes at these positions by the columns of `motion`. */
@@ -62,15 +65,27 @@ double widening(double fiducials) {
   return 3.0 * boost::math::quantile(estimated, 0.95) / chi_square_95;
 }
 
+/** The bend is r z² w/2 of a turn by z deviations, which is far along the way across, too: with 2 r² w² in place of
+ * its mean square, 3/4 r² w², 95 % of the points lie within both. */
+constexpr double bend = 2.0;
+
 /** What a registration does to any point of the scanner. */
 struct RegistrationError {
   Vector3d centroid_mm = Vector3d::Zero();
   double shift_mm2 = 0.0;
-  Matrix3d turn_rad2 = Matrix3d::Zero();
+  Matrix3d axes = Matrix3d::Identity(); /**< about which it turns: unit vectors, columns */
+  Vector3d turn_rad2 = Vector3d::Zero();
 
   [[nodiscard]] Matrix3d at(const Vector3d& point) const {
-    const Matrix3d lever = cross_with(point - centroid_mm);
-    return shift_mm2 * Matrix3d::Identity() + lever * turn_rad2 * lever.transpose();
+    Matrix3d sum = shift_mm2 * Matrix3d::Identity();
+    for (Eigen::Index place = 0; place < 3; ++place) {
+      const Vector3d axis = axes.col(place);
+      const Vector3d along = axis.cross(point - centroid_mm);
+      const Vector3d inwards = axis.cross(along);
+      sum += turn_rad2[place] * along * along.transpose() +
+             bend * squared(turn_rad2[place]) * inwards * inwards.transpose();
+    }
+    return sum;
   }
 };
 
@@ -90,13 +105,14 @@ KinematicsResult<RegistrationError> registration_error(const RegistrationFit& fi
         Vector3d::Constant(scatter.trace()) - principal.eigenvalues().cwiseMax(0.0);
     return check_range("fiducial_spread_mm", std::sqrt(std::max(0.0, from_axis_mm2.minCoeff())),
                        least_spread_mm, length_limit_mm, Code::singular)
-        .map([&] {
+        .and_then([&] {
           error.shift_mm2 = widening(count) * squared(fit.residual_mm) / (3.0 * (count - 2.0));
-          error.turn_rad2 = principal.eigenvectors() *
-                            (error.shift_mm2 * from_axis_mm2.cwiseInverse()).asDiagonal() *
-                            principal.eigenvectors().transpose();
-          return error;
-        });
+          error.axes = principal.eigenvectors();
+          error.turn_rad2 = error.shift_mm2 * from_axis_mm2.cwiseInverse();
+          return check_range("registration_turn_rad", std::sqrt(error.turn_rad2.maxCoeff()), 0.0,
+                             largest_turn_rad, Code::singular);
+        })
+        .map([&] { return error; });
   });
 }
 

@@ -9,15 +9,18 @@
  *     encoder       J D Jᵀ; an axis rests anywhere within deadband + 1/2 count of its setpoint: variance
  *                   (deadband + 1/2)²/3 counts²
  *     play          J D Jᵀ; the tool is anywhere from where the encoder is to q counts beyond it: second
- * moment q²/3 counts². An axis with room to come from below (`Axis::take_up_counts`) loses its play p but for
- * what it may settle back: q = min(p, deadband + 1/2). Otherwise q = p registration  σ²/N I + [r]ₓ W [r]ₓᵀ; r
- * from the centroid of the N fiducials to the point, W along their principal axes σ²/(N fₖ²), fₖ their root
- * mean square distance from the axis k calibration   s² I, s as the robot's file states it image         as
- * whoever sets the target states it
+ *                   moment q²/3 counts². An axis with room to come from below (`Axis::take_up_counts`) loses
+ *                   its play p but for what it may settle back: q = min(p, deadband + 1/2). Otherwise it may
+ *                   come from above, and the tool is off by p each time: p²
+ *     registration  σ²/N I + Σₖ wₖ vₖvₖᵀ + 2 wₖ² uₖuₖᵀ; about the principal axes aₖ of the N fiducials
+ *                   wₖ = σ²/(N fₖ²), fₖ their root mean square distance from aₖ; vₖ = aₖ × r, r from their
+ *                   centroid to the point; uₖ = aₖ × vₖ, along which a turn bends the way to second order
+ *     calibration   s² I, s as the robot's file states it
+ *     image         as whoever sets the target states it
  *
- * The trace of the registration's part is the TRE² of J. M. Fitzpatrick, J. B. West, C. R. Maurer: Predicting
- * error in rigid-body point-based registration, IEEE Trans. Med. Imaging 17(5), 1998. The error of a fiducial
- * is the same in all directions: 3σ² = FRE² N/(N - 2), by the residual FRE.
+ * The trace of the registration's part is, to first order, the TRE² of J. M. Fitzpatrick, J. B. West, C. R.
+ * Maurer: Predicting error in rigid-body point-based registration, IEEE Trans. Med. Imaging 17(5), 1998. The
+ * error of a fiducial is the same in all directions: 3σ² = FRE² N/(N - 2), by the residual FRE.
  *
  * J carries the motion of the axes to the point: the Jacobian of the treatment point, at the tip with its
  * lever. The parts are taken for Gaussian when the ellipsoid is drawn. Bending of the needle, drag of tissue,
@@ -72,8 +75,9 @@ struct ErrorBudget {
 };
 
 /**
- * With the axes at `positions`. SINGULAR where the pose is near a singular one or the fiducials lie nearly on
- * a line; else an error of forward kinematics, or OUT_OF_RANGE with fewer than three fiducials.
+ * With the axes at `positions`. SINGULAR where the pose is near a singular one, the fiducials lie nearly on a
+ * line, or a turn of the registration has a deviation of more than 0.25 rad; else an error of forward
+ * kinematics, or OUT_OF_RANGE with fewer than three fiducials.
  */
 KinematicsResult<ErrorBudget> error_budget_of(const Robot& robot, const RobotKinematics& kinematics,
                                               const Pose& scanner_from_zframe, const AxisPositions& positions,

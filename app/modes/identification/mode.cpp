@@ -25,6 +25,12 @@ void IdentificationMode::begin(const ilk_snapshot_t& /*snapshot*/) noexcept {
 }
 
 void IdentificationMode::go_on(const ilk_snapshot_t& snapshot) noexcept {
+  if (insertion_held_ && plan_.insertion_slot == slot_) {
+    begin(snapshot);
+    wait_for(TaskReason::breathing);
+    return;
+  }
+  wait_for(TaskReason::none);
   const std::uint32_t now = snapshot.state.system.tick;
   const ilk_axis_t& axis = snapshot.state.axis[slot_];
   // A lease runs down from the tick in which the kernel took it.

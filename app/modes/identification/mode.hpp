@@ -23,6 +23,7 @@ class IdentificationMode final : public HeldMode {
 
   void report(ControlView& view) const noexcept override;
   void on_unsent(const KernelRequest& request) noexcept override;
+  void hold_insertion(bool held) noexcept override { insertion_held_ = held; }
 
  private:
   [[nodiscard]] std::uint32_t prepare(std::uint32_t tick) noexcept override;
@@ -33,6 +34,7 @@ class IdentificationMode final : public HeldMode {
   const RobotPlan plan_;
   AxisMeasurement measurement_;
   std::uint32_t slot_ = 0;
+  bool insertion_held_ = false;
   MeasuringMove desired_;
   std::array<SetpointLease, ILK_SLOTS> leases_{};
 };

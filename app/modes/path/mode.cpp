@@ -17,6 +17,8 @@ constexpr double longest_lag = 0.75;
  * gives up at full speed, and back so slowly that a count more or less does not shake the others. */
 constexpr double slowing_s = 0.015;
 constexpr double recovering_s = 0.1;
+/** After a pause an axis coasts for less. */
+constexpr double coast_s = 0.2;
 /** Below it the time of the path stands. */
 constexpr double least_rate = 0.02;
 
@@ -26,9 +28,11 @@ PathMode::PathMode(const RobotPlan& plan)
     : HeldMode(typeid(PathTask), plan),
       period_s_(plan.period_s()),
       settle_ticks_(static_cast<std::uint32_t>(settle_s / plan.period_s())),
+      coast_ticks_(static_cast<std::uint32_t>(coast_s / plan.period_s())),
       insertion_slot_(plan.insertion_slot),
       walk_(plan) {
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
+    deadband_counts_[slot] = plan.axis[slot].rules.deadband_counts;
     trackers_[slot] = AxisTracker(slot, plan.axis[slot], plan.lease_ticks());
   }
 }
@@ -43,6 +47,11 @@ std::uint32_t PathMode::prepare(std::uint32_t tick) noexcept {
 }
 
 void PathMode::drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept {
+  const std::uint32_t now = snapshot.state.system.tick;
+  driven_tick_ = executes() ? now : driven_tick_;
+  for (std::uint32_t slot = 0; slot < ILK_SLOTS && now - driven_tick_ <= coast_ticks_; ++slot) {
+    left_[slot] = snapshot.state.axis[slot].position_counts;
+  }
   for (std::uint32_t slot = 0; slot < ILK_SLOTS; ++slot) {
     if (follows(slot)) {
       trackers_[slot].hold(status().task, snapshot, points_[slot], requests);
@@ -59,6 +68,7 @@ std::optional<Setpoint> PathMode::setpoint(std::uint32_t slot) const noexcept {
 /** Begins the leg, or goes on with it after a pause. */
 void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
   const std::uint32_t now = snapshot.state.system.tick;
+  take_up_again(snapshot);
   for (std::size_t leg = status().step; leg < program().legs.size(); ++leg) {
     let_move(mask_of(program().legs[leg]));
   }
@@ -80,6 +90,25 @@ void PathMode::begin(const ilk_snapshot_t& snapshot) noexcept {
   seen_tick_ = now;
   end_tick_ = now;
   resting_ = false;
+}
+
+/** A push upwards in a pause carries the tool along, and the way back down from there opens its play: the leg
+ * that took it up is made again. */
+void PathMode::take_up_again(const ilk_snapshot_t& snapshot) noexcept {
+  const std::uint32_t before = status().step == 0 ? 0 : status().step - 1;
+  const auto* below = std::get_if<MoveLeg>(&program().legs[before]);
+  if (below == nullptr || !below->takes_up_play || before == status().step) {
+    return;
+  }
+  const bool is_pushed = std::ranges::any_of(below->targets, [&](const AxisCounts& target) {
+    const ilk_axis_t& axis = snapshot.state.axis[target.slot];
+    return axis.position_counts - left_[target.slot] >
+           static_cast<std::int32_t>(deadband_counts_[target.slot]);
+  });
+  if (is_pushed) {
+    set_step(before);
+    walk_.take(program().legs[before]);
+  }
 }
 
 void PathMode::go_on(const ilk_snapshot_t& snapshot) noexcept {

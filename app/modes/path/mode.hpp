@@ -35,6 +35,7 @@ class PathMode final : public HeldMode {
   void begin(const ilk_snapshot_t& snapshot) noexcept override;
   void go_on(const ilk_snapshot_t& snapshot) noexcept override;
   void drive(const ilk_snapshot_t& snapshot, KernelRequests& requests) noexcept override;
+  void take_up_again(const ilk_snapshot_t& snapshot) noexcept;
   void settle(const ilk_snapshot_t& snapshot) noexcept;
   void end_leg(const ilk_snapshot_t& snapshot) noexcept;
   void advance(const ilk_snapshot_t& snapshot) noexcept;
@@ -49,10 +50,14 @@ class PathMode final : public HeldMode {
 
   const double period_s_;
   const std::uint32_t settle_ticks_;
+  const std::uint32_t coast_ticks_;
   const std::optional<std::uint32_t> insertion_slot_;
   TrajectoryFollower walk_;
   TrajectoryFollower::Points points_{};
   std::array<AxisTracker, ILK_SLOTS> trackers_{};
+  std::array<std::uint32_t, ILK_SLOTS> deadband_counts_{};
+  std::array<std::int32_t, ILK_SLOTS> left_{}; /**< where each axis came to rest after it was driven last */
+  std::uint32_t driven_tick_ = 0;
   bool insertion_held_ = false;
   double lag_rate_ = 1.0;     /**< at which the axis that is farthest behind lets the time of the path pass */
   double breath_rate_ = 1.0;  /**< the same of the breathing gate */

@@ -66,6 +66,31 @@ TEST_F(HoldRoutesTest, TheGateHasOneSourceWhoseEndClosesIt) {
   EXPECT_EQ(signal("open").status, 200u) << "another source may take its place";
 }
 
+TEST_F(HoldRoutesTest, WhoeverSaysHoldTakesNeitherTheHoldNorTheOpeningOfAnotherAway) {
+  ControlView view = test::ready_view();
+  view.snapshot.clock = ILK_CLOCK_SIM;
+  view.snapshot.period_us = 1000;
+  show(view);
+  const auto state = [&] {
+    return channel_->holds.newest().gate.at(view.moment(std::chrono::steady_clock::now()));
+  };
+  ASSERT_EQ(use_gate(true).status, 200u);
+  const std::string iris = token_of("iris");
+  for (const char* const said : {"hold", "open"}) {
+    ASSERT_EQ(signal(said).status, 200u);
+    ASSERT_EQ(as(iris, [&] { return signal("hold", 50); }).status, 200u);
+    EXPECT_EQ(as(iris, [&] { return signal("open"); }).problem()["code"], "GATE_SOURCE") << said;
+    EXPECT_EQ(state(), GateState::hold);
+  }
+  ASSERT_EQ(as(iris, [&] { return signal("hold", 50); }).status, 200u);
+  EXPECT_EQ(signal("open").problem()["code"], "GATE_SOURCE") << "of whoever opened it before, too";
+  view.snapshot.state.system.tick += 50;
+  show(view);
+  EXPECT_EQ(state(), GateState::no_signal);
+  EXPECT_EQ(signal("open").status, 200u) << "the other hold is over";
+  EXPECT_EQ(state(), GateState::open);
+}
+
 TEST_F(HoldRoutesTest, DuringAScanNothingIsApprovedNorJoggedAndProposalsWait) {
   ASSERT_EQ(scan(true).status, 200u);
   EXPECT_TRUE(channel_->holds.newest().scanning);

@@ -179,5 +179,29 @@ TEST_P(IdentificationModeTest, AnAxisThatStandsWhereItHasToMoveEndsItBeforeItIsA
 
 INSTANTIATE_TEST_SUITE_P(Latencies, IdentificationModeTest, testing::Values(2u, 10u));
 
+TEST(IdentificationOfTheInsertion, WaitsForTheBreathingGateAndMeasuresOnceItOpens) {
+  ClosedLoop loop(23, 1);
+  loop.make_all_ready();
+  const Axis& axis = *neuro().at_slot(test::insertion);
+  const auto status = [&] { return loop.status(typeid(IdentificationTask)); };
+  loop.hold({.all = false, .insertion = true, .needs_press = false});
+  loop.give(1, IdentificationTask{
+                   axis.slot, measuring_range(loop.config().axis[axis.slot], axis.lowest_setpoint_counts(),
+                                              axis.highest_setpoint_counts())});
+  const std::int32_t begin = loop.state().axis[axis.slot].position_counts;
+  for (int tick = 0; tick < 2000; ++tick) {
+    loop.tick();
+    ASSERT_EQ(loop.outputs().command[axis.slot].drive, 0u);
+  }
+  EXPECT_EQ(status().reason, TaskReason::breathing);
+  EXPECT_NEAR(loop.state().axis[axis.slot].position_counts, begin, 1);
+  loop.hold({});
+  for (std::uint32_t i = 0; i < longest_ticks && is_open(status().phase); ++i) {
+    loop.tick();
+  }
+  EXPECT_EQ(status().reason, TaskReason::measured);
+  EXPECT_EQ(loop.refusals(), 0u);
+}
+
 }  // namespace
 }  // namespace interlock

@@ -217,6 +217,56 @@ TEST(MotionEnd, AToolWithPlayIsWhereItShouldBeOnceItsAxisCameFromBelow) {
       << "the play shows when nothing is done about it";
 }
 
+/** Somebody lifts the foot on the last counts, moves the axes on by hand, and the foot presses again. */
+TEST(MotionEnd, AToolWithPlayIsWhereItShouldBeAlthoughItsAxisWasPushedInAPause) {
+  Robot robot = on_a_bench(neuro());
+  plant::Parameters plant = plant_of(robot);
+  for (Axis& axis : robot.axes) {
+    axis.mechanics.tool_play_counts = 20;
+    plant.axis[axis.slot].tool_play_counts = 20;
+  }
+  const std::vector<AxisCounts> targets{{0, -300}, {2, -100}, {4, -400}};
+  const PathProgram program = arriving_from_below(robot, {{MoveLeg{targets, 0.0, 0.0}}});
+  ASSERT_EQ(program.legs.size(), 2u);
+  ClosedLoop loop(5, 1, robot, plant);
+  loop.make_all_ready();
+  loop.give(2, test::along(program));
+  const auto left = [&](const AxisCounts& target) {
+    return target.counts - loop.state().axis[target.slot].position_counts;
+  };
+  for (std::uint32_t i = 0; i < minute_ticks && (loop.path().step == 0 || left(targets[0]) > 15); ++i) {
+    loop.tick();
+  }
+  ASSERT_EQ(loop.path().step, 1u);
+  loop.pedal(false);
+  loop.run(500);
+  for (const AxisCounts& target : targets) {
+    loop.happen(plant::command::PushAxis{target.slot, 17});
+  }
+  loop.run(500);
+  loop.pedal(true);
+  for (std::uint32_t i = 0; i < minute_ticks && is_open(loop.path().phase); ++i) {
+    loop.tick();
+  }
+  ASSERT_EQ(loop.path().phase, TaskPhase::done);
+  for (const AxisCounts& target : targets) {
+    const double home = loop.true_position(target.slot) - loop.state().axis[target.slot].position_counts;
+    EXPECT_LE(std::abs(loop.true_tool(target.slot) - home - target.counts), 2.0) << target.slot;
+  }
+}
+
+TEST(MotionEnd, AxesGoTogetherToWhereThePlayOfSomeIsTakenUpAndTheInsertionGoesLast) {
+  Robot robot = neuro();
+  std::ranges::find(robot.axes, "yaw", &Axis::name)->mechanics.tool_play_counts = 4;
+  const MoveLeg leg{{{0, -300}, {2, 100}, {test::insertion, 500}}, 0.0, 0.0};
+  const PathProgram program = arriving_from_below(robot, {{leg}});
+  ASSERT_EQ(program.legs.size(), 2u);
+  const std::vector<AxisCounts> below{{0, -307}, {2, 100}};
+  EXPECT_EQ(std::get<MoveLeg>(program.legs[0]).targets, below);
+  EXPECT_TRUE(std::get<MoveLeg>(program.legs[0]).takes_up_play);
+  EXPECT_EQ(std::get<MoveLeg>(program.legs[1]).targets, leg.targets);
+}
+
 TEST(MotionEnd, OnlyALegThatMayComeFromAboveGoesBelowFirst) {
   Robot robot = neuro();
   Axis& yaw = *std::ranges::find(robot.axes, "yaw", &Axis::name);

@@ -249,7 +249,52 @@ TEST(ErrorBudget, AnAxisWithoutRoomToComeFromBelowBringsItsWholePlay) {
   const std::int32_t counts = *yaw.to_counts(at.positions[test::place_of(at.robot, "yaw")]);
   yaw.soft_limits.min_counts += counts - 20 - yaw.lowest_setpoint_counts();
   ASSERT_FALSE(yaw.take_up_counts(counts));
-  EXPECT_NEAR(budget_of(at).contributions[2].treatment_mm / with_room, 20.0 / 1.5, 0.1);
+  EXPECT_NEAR(budget_of(at).contributions[2].treatment_mm / with_room, std::sqrt(3.0) * 20.0 / 1.5, 0.1);
+}
+
+TEST(ErrorBudget, AxesThatAllComeFromAboveToTheEndsOfTheirRangesLeaveThePointWithin) {
+  for (AtPose& at : poses()) {
+    at.accuracy = {};
+    at.robot.calibration_mm.reset();
+    AxisPositions strayed = at.positions;
+    for (std::size_t place = 0; place < at.positions.size(); ++place) {
+      Axis& axis = at.robot.axes[place];
+      axis.mechanics.tool_play_counts = 20;
+      const std::int32_t counts = *axis.to_counts(at.positions[place]);
+      axis.soft_limits.min_counts += counts - 5 - axis.lowest_setpoint_counts();
+      ASSERT_FALSE(axis.take_up_counts(counts));
+      strayed[place] += 20 / axis.counts_per_unit;
+    }
+    const ErrorEllipsoid within = budget_of(at).treatment;
+    const Vector3d off =
+        at.scanner_from_zframe * at.kinematics.zframe_from_treatment(strayed)->translation() -
+        within.centre_mm;
+    EXPECT_LE(off.dot(within.covariance_mm2.inverse() * off), chi_square_95);
+  }
+}
+
+TEST(ErrorBudget, NineteenOfTwentyTipsEndInTheEllipsoidByFiducialsNearALine) {
+  AtPose at = poses().front();
+  std::vector<Vector3d> points{{-40, 0, 0}, {-20, 4, 0}, {0, -4, 2}, {20, 3, -3}, {40, -2, 1}};
+  for (Vector3d& each : points) {
+    each = at.scanner_from_zframe * each;
+  }
+  at.accuracy.registration->fiducials_mm = points;
+  at.accuracy.target_mm2.reset();
+  at.robot.calibration_mm.reset();
+  const auto [treatment, tip] = shares_within(at, stray_with_the_stated_deviation, 11);
+  EXPECT_GE(treatment, 0.94);
+  EXPECT_GE(tip, 0.94);
+}
+
+TEST(ErrorBudget, ARegistrationThatMayBeTurnedFarHasNone) {
+  AtPose at = poses().front();
+  at.accuracy.registration->fiducials_mm = {{0, 0, 0}, {10, 3, 0}, {50, 0, 0}};
+  at.accuracy.registration->residual_mm = 0.5;
+  const auto budget =
+      error_budget_of(at.robot, at.kinematics, at.scanner_from_zframe, at.positions, at.accuracy);
+  ASSERT_FALSE(budget);
+  EXPECT_EQ(budget.error().quantity, "registration_turn_rad");
 }
 
 TEST(ErrorBudget, WhatNobodyStatesCountsAsNothingAndIsNamed) {
