@@ -65,8 +65,8 @@ double widening(double fiducials) {
   return 3.0 * boost::math::quantile(estimated, 0.95) / chi_square_95;
 }
 
-/** The bend is r z² w/2 of a turn by z deviations, which is far along the way across, too: with 2 r² w² in place of
- * its mean square, 3/4 r² w², 95 % of the points lie within both. */
+/** The bend is r z² w/2 of a turn by z deviations, which is far along the way across, too: with 2 r² w² in
+ * place of its mean square, 3/4 r² w², 95 % of the points lie within both. */
 constexpr double bend = 2.0;
 
 /** What a registration does to any point of the scanner. */

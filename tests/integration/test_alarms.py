@@ -8,6 +8,7 @@ from conftest import StackFactory
 from interface import judge
 from motion import LATERAL, call, enable, open_stream, unlock, wait_for_mode, wait_until
 from stack import Stack
+from websockets.sync.client import ClientConnection
 
 
 def alarms(robot: Stack) -> list[dict]:
@@ -22,7 +23,7 @@ def wait_for_codes(robot: Stack, *expected: str) -> None:
     wait_until(f"alarms {expected}", lambda: codes(robot) == list(expected))
 
 
-def wait_for_message(stream, holds: Callable[[dict], bool]) -> dict:
+def wait_for_message(stream: ClientConnection, holds: Callable[[dict], bool]) -> dict:
     while True:
         received = stream.recv()
         message = json.loads(received) if isinstance(received, str) else {}
