@@ -135,12 +135,25 @@ AuditRecord Audit::append(const AuditEntry& entry) {
   return record;
 }
 
-std::vector<AuditRecord> Audit::list(std::size_t count, std::optional<std::int64_t> before) const {
-  SQLite::Statement select(database_,
-                           std::string("SELECT ") + audit_columns +
-                               " FROM audit WHERE ?1 IS NULL OR number < ?1 ORDER BY number DESC LIMIT ?2");
-  bind_optional(select, 1, before);
-  select.bind(2, static_cast<std::int64_t>(count));
+std::vector<AuditRecord> Audit::list(std::size_t count, const AuditFilter& filter) const {
+  SQLite::Statement select(
+      database_,
+      std::string("SELECT ") + audit_columns +
+          " FROM audit WHERE (?1 IS NULL OR number < ?1) AND (?2 IS NULL OR kind = ?2) AND (?3 IS NULL "
+          "OR actor = ?3) AND (?4 IS NULL OR instr(lower(detail), lower(?4))) AND (?5 IS NULL OR time >= "
+          "?5) ORDER BY number DESC LIMIT ?6");
+  // What is not bound is NULL.
+  const auto bind = [&](int place, const auto& value) {
+    if (value) {
+      select.bind(place, *value);
+    }
+  };
+  bind(1, filter.before);
+  bind(2, filter.kind);
+  bind(3, filter.actor);
+  bind(4, filter.text);
+  bind(5, filter.since ? std::optional(iso_8601(*filter.since)) : std::nullopt);
+  select.bind(6, static_cast<std::int64_t>(count));
   return oldest_first(select);
 }
 

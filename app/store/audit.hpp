@@ -62,6 +62,15 @@ struct AuditEntry {
   nlohmann::json detail = nlohmann::json::object(); /**< an object; no secrets */
 };
 
+/** Which records a list has; what is empty lets every one through. */
+struct AuditFilter {
+  std::optional<std::int64_t> before = {}; /**< only those of a smaller number */
+  std::optional<std::string> kind = {};    /**< as `audit_kind_name` has it */
+  std::optional<std::string> actor = {};
+  std::optional<std::string> text = {}; /**< that stands in the detail, in capitals or not */
+  std::optional<UtcTime> since = {};    /**< only those of then or later */
+};
+
 /** The audit in one transaction. */
 class Audit {
  public:
@@ -71,9 +80,8 @@ class Audit {
    * user's digest, which `verify` compares; one of the command line the system's user. */
   AuditRecord append(const AuditEntry& entry);
 
-  /** The newest `count` records, of those before number `before` where it is given; oldest first. */
-  [[nodiscard]] std::vector<AuditRecord> list(std::size_t count,
-                                              std::optional<std::int64_t> before = std::nullopt) const;
+  /** The newest `count` records that the filter lets through; oldest first. */
+  [[nodiscard]] std::vector<AuditRecord> list(std::size_t count, const AuditFilter& filter = {}) const;
 
   /** The newest `count` records of those kinds with numbers from `first` to `last`; oldest first. */
   [[nodiscard]] std::vector<AuditRecord> between(std::int64_t first, std::int64_t last,

@@ -1,4 +1,5 @@
 /** The administrator's pages. */
+import { readFile } from "node:fs/promises";
 import { expect, test } from "./fixtures";
 
 const password = "correct horse battery";
@@ -67,6 +68,28 @@ test("the audit names who did what, newest first, and goes back to the first rec
     if (await older.isVisible()) await older.click();
     expect(await numbers()).toContain(1);
   }).toPass();
+});
+
+test("the audit is narrowed by kind, actor and text, and saved as it is shown", async ({ robot, page }) => {
+  await robot.unlockRobot();
+  await robot.open("Audit");
+  const audit = robot.panel("Audit");
+  const kinds = () => audit.getByRole("row").locator("td:nth-child(5)").allTextContents();
+  await audit.getByLabel("Kind").selectOption("login");
+  await expect.poll(kinds).toEqual(["login"]);
+  await audit.getByLabel("Actor").fill("nobody");
+  await expect(audit).toContainText("No record fits these choices.");
+  await audit.getByLabel("Actor").fill("");
+  await audit.getByLabel("Kind").selectOption("");
+  await audit.getByLabel("Detail has").fill("reset");
+  await expect.poll(async () => new Set(await kinds())).toEqual(new Set(["verdict", "request"]));
+  const saving = page.waitForEvent("download");
+  await robot.button("Save as CSV").click();
+  const rows = (await readFile(await (await saving).path(), "utf8")).trim().split("\r\n");
+  expect(rows[0]).toBe("number,time,tick,actor,session,kind,detail,hash");
+  expect(rows.length - 1).toBe((await kinds()).length);
+  await page.reload();
+  await expect(audit.getByLabel("Detail has")).toHaveValue("reset");
 });
 
 test("the chain of the audit is checked by the app, and a noted hash that is gone is told", async ({

@@ -49,19 +49,29 @@ AuditRoutes::AuditRoutes(const Context& context, Router& router) : context_(cont
 }
 
 Answering AuditRoutes::records(const Call& call) const {
-  const auto query = known_query(call.request, {"records", "before"});
+  constexpr std::initializer_list<const char*> names{"records", "before", "kind", "actor", "text", "since"};
+  const auto query = known_query(call.request, names);
   if (!query) {
     co_return fail(query.error());
   }
-  Fields fields(*query, {"records", "before"});
+  Fields fields(*query, names);
   const auto count = fields.integer("records", 1, most_records).value_or(default_records);
-  const auto before = fields.integer("before", 1, std::numeric_limits<std::int64_t>::max());
+  AuditFilter filter{.before = fields.integer("before", 1, std::numeric_limits<std::int64_t>::max()),
+                     .kind = fields.text("kind"),
+                     .actor = fields.text("actor"),
+                     .text = fields.text("text")};
+  if (const auto since = fields.text("since")) {
+    filter.since = parse_iso_8601(*since);
+    if (!filter.since) {
+      fields.reject("since", *since, "a time such as 2024-05-01T12:34:56.789Z");
+    }
+  }
   if (fields.problem()) {
     co_return fail(*fields.problem());
   }
-  auto list_records = [count, before](Store& store) {
+  auto list_records = [count, filter = std::move(filter)](Store& store) {
     return store.read([&](Transaction& transaction) -> Stored<std::vector<AuditRecord>> {
-      return Audit(transaction).list(static_cast<std::size_t>(count), before);
+      return Audit(transaction).list(static_cast<std::size_t>(count), filter);
     });
   };
   const auto found = co_await context_.store.run(std::move(list_records));

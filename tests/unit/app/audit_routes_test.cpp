@@ -39,14 +39,22 @@ TEST_F(AuditRoutesTest, TheNewestRecordsComeOldestFirst) {
   EXPECT_EQ(before[0]["number"], two[0]["number"].get<int>() - 1);
 }
 
+TEST_F(AuditRoutesTest, RecordsAreFoundByKindActorAndText) {
+  change_target(1);
+  for (const char* const query : {"?kind=setting", "?actor=edna", "?text=Target_Point"}) {
+    const json found = records(query);
+    ASSERT_FALSE(found.empty()) << query;
+    EXPECT_EQ(found.back()["detail"]["new"]["target_point"][0], 1.0) << query;
+  }
+  EXPECT_TRUE(records("?kind=setting&actor=nobody").empty());
+}
+
 TEST_F(AuditRoutesTest, OnlyAdministratorsReadIt) { EXPECT_EQ(get("/api/audit").problem()["code"], "ROLE"); }
 
 TEST_F(AuditRoutesTest, AWrongParameterIsNamedAndAnUnknownOneIgnored) {
-  const std::pair<std::string, std::string> cases[] = {{"records=0", "records"},
-                                                       {"records=1001", "records"},
-                                                       {"records=all", "records"},
-                                                       {"before=0", "before"},
-                                                       {"before=-1", "before"}};
+  const std::pair<std::string, std::string> cases[] = {
+      {"records=0", "records"}, {"records=1001", "records"}, {"records=all", "records"},
+      {"before=0", "before"},   {"before=-1", "before"},     {"since=noon", "since"}};
   for (const auto& [query, field] : cases) {
     const Answered answered = read_audit("?" + query);
     EXPECT_EQ(answered.status, 422u) << query;

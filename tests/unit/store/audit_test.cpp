@@ -31,8 +31,8 @@ class AuditTest : public StoreTest {
     return seen(store_, [&](Transaction& transaction) { return Audit(transaction).verify(noted); });
   }
 
-  std::vector<AuditRecord> list(std::size_t count, std::optional<std::int64_t> before = std::nullopt) {
-    return seen(store_, [&](Transaction& transaction) { return Audit(transaction).list(count, before); });
+  std::vector<AuditRecord> list(std::size_t count, const AuditFilter& filter = {}) {
+    return seen(store_, [&](Transaction& transaction) { return Audit(transaction).list(count, filter); });
   }
 
   void expect_break(std::int64_t number, const std::string& problem) {
@@ -110,7 +110,7 @@ TEST_F(AuditTest, ListIsOldestFirstAndPages) {
   append(5);
   const auto numbers = [&](std::size_t count, std::optional<std::int64_t> before) {
     std::vector<std::int64_t> found;
-    for (const AuditRecord& record : list(count, before)) {
+    for (const AuditRecord& record : list(count, {.before = before})) {
       found.push_back(record.number);
     }
     return found;
@@ -119,6 +119,29 @@ TEST_F(AuditTest, ListIsOldestFirstAndPages) {
   EXPECT_THAT(numbers(2, 4), testing::ElementsAre(2, 3));
   EXPECT_THAT(numbers(9, 2), testing::ElementsAre(1));
   EXPECT_THAT(numbers(9, 1), testing::IsEmpty());
+}
+
+TEST_F(AuditTest, ListHasWhatTheFilterLetsThrough) {
+  append(3);
+  commit(store_, [&](Transaction& transaction) {
+    Audit(transaction)
+        .append(
+            {noon + std::chrono::hours(1), 43, "bob", 8, AuditKind::stop, {{"reason", "A wire at 100 %"}}});
+  });
+  const auto numbers = [&](const AuditFilter& filter) {
+    std::vector<std::int64_t> found;
+    for (const AuditRecord& record : list(9, filter)) {
+      found.push_back(record.number);
+    }
+    return found;
+  };
+  EXPECT_THAT(numbers({.kind = "stop"}), testing::ElementsAre(4));
+  EXPECT_THAT(numbers({.actor = "ann"}), testing::ElementsAre(1, 2, 3));
+  EXPECT_THAT(numbers({.text = "a WIRE"}), testing::ElementsAre(4));
+  EXPECT_THAT(numbers({.text = "100 %"}), testing::ElementsAre(4)) << "no pattern, but what stands there";
+  EXPECT_THAT(numbers({.since = noon + std::chrono::minutes(1)}), testing::ElementsAre(4));
+  EXPECT_THAT(numbers({.before = 3, .kind = "proposal"}), testing::ElementsAre(1, 2));
+  EXPECT_THAT(numbers({.kind = "proposal", .actor = "bob"}), testing::IsEmpty());
 }
 
 TEST_F(AuditTest, RefusedTransactionLeavesNoRecord) {

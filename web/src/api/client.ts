@@ -45,6 +45,8 @@ export type Connection = Schemas["Connection"];
 export type NavigationConnection = Schemas["NavigationConnection"];
 export type Imager = Schemas["Imager"];
 export type Alarm = Schemas["Alarm"];
+/** What is left out lets every record through. */
+export type AuditFilter = { before?: number; kind?: string; actor?: string; text?: string };
 export type Holds = Schemas["Holds"];
 export type NavigationRole = NavigationConnection["role"];
 export type Biopsy = Schemas["Biopsy"];
@@ -317,12 +319,8 @@ export const api = {
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
   acknowledgeLogs: (sequences: number[]) =>
     act(() => http.POST("/api/logs/acknowledge", { body: { sequences } })),
-  audit: (records: number, before?: number) =>
-    read(() =>
-      http.GET("/api/audit", {
-        params: { query: before === undefined ? { records } : { records, before } },
-      }),
-    ),
+  audit: (records: number, filter: AuditFilter = {}) =>
+    read(() => http.GET("/api/audit", { params: { query: { records, ...filter } } })),
 
   /** Goes over all records: a long audit takes its time. */
   verifyAudit: (noted?: string) =>

@@ -5241,6 +5241,14 @@ export interface operations {
                 records?: number;
                 /** @description Only records before this number. */
                 before?: number;
+                /** @description Only records of that kind. */
+                kind?: string;
+                /** @description Only records of that actor. */
+                actor?: string;
+                /** @description Only records whose detail, as JSON, has that text, in capitals or not. */
+                text?: string;
+                /** @description Only records of then or later. */
+                since?: string;
             };
             header?: never;
             path?: never;

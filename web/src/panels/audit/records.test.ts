@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { AuditRecord } from "../../api/client";
-import { detailText, mergeRecords } from "./records";
+import { detailText, mergeRecords, recordsCsv } from "./records";
 
 const record = (number: number): AuditRecord => ({ number }) as AuditRecord;
 
@@ -20,5 +20,17 @@ describe("detailText", () => {
 
   it("is empty without detail", () => {
     expect(detailText({})).toBe("");
+  });
+});
+
+describe("recordsCsv", () => {
+  it("quotes what a field may have in it, oldest first", () => {
+    const second = { ...record(2), actor: 'a "b", c', detail: { text: "x" }, tick: null } as AuditRecord;
+    expect(recordsCsv([second, record(1)]).split("\r\n")).toEqual([
+      "number,time,tick,actor,session,kind,detail,hash",
+      "1,,,,,,,",
+      '2,,,"a ""b"", c",,,"{""text"":""x""}",',
+      "",
+    ]);
   });
 });

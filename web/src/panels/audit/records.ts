@@ -16,3 +16,15 @@ export function detailText(detail: Readonly<Record<string, unknown>>): string {
     .map(([name, value]) => `${name} ${typeof value === "string" ? value : JSON.stringify(value)}`)
     .join(", ");
 }
+
+const COLUMNS = ["number", "time", "tick", "actor", "session", "kind", "detail", "hash"] as const;
+
+/** Oldest first, for other programs: a header, then a row a record, its detail as JSON (RFC 4180). */
+export function recordsCsv(records: readonly AuditRecord[]): string {
+  const field = (value: unknown): string => {
+    const text = typeof value === "object" && value !== null ? JSON.stringify(value) : `${value ?? ""}`;
+    return /[",\r\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text;
+  };
+  const rows = [...records].reverse().map((record) => COLUMNS.map((name) => field(record[name])).join(","));
+  return [COLUMNS.join(","), ...rows, ""].join("\r\n");
+}
