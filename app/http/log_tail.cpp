@@ -11,10 +11,7 @@ json to_json(const LogLine& line) {
           {"time", iso_8601(line.time)},
           {"level", name_of(line.level)},
           {"text", line.text},
-          {"repeated", line.repeated},
-          {"acknowledged", line.acknowledged ? json{{"user", line.acknowledged->user},
-                                                    {"time", iso_8601(line.acknowledged->time)}}
-                                             : json()}};
+          {"repeated", line.repeated}};
 }
 
 json log_message(const LogLine& line) {

@@ -217,9 +217,6 @@ class LogRoutes {
  private:
   [[nodiscard]] Reply lines(const Call& call) const;
   [[nodiscard]] boost::asio::awaitable<Reply> set_level(const Call& call) const;
-  [[nodiscard]] boost::asio::awaitable<Reply> acknowledge(const Call& call) const;
-  [[nodiscard]] tl::expected<std::vector<LogLine>, Problem> unanswered(
-      const std::vector<std::uint64_t>& sequences) const;
   [[nodiscard]] Success answer(const std::vector<LogLine>& lines) const;
 
   const Context& context_;

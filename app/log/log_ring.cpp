@@ -40,26 +40,6 @@ std::vector<LogLine> LogRing::after(std::uint64_t sequence) const {
   return {first, lines_.end()};
 }
 
-std::optional<LogLine> LogRing::find(std::uint64_t sequence) const {
-  const std::lock_guard lock(lines_mutex_);
-  const auto line = std::ranges::find(lines_, sequence, &LogLine::sequence);
-  return line == lines_.end() ? std::nullopt : std::optional(*line);
-}
-
-std::vector<LogLine> LogRing::acknowledge(const std::vector<std::uint64_t>& sequences,
-                                          const Acknowledgement& by) {
-  const std::lock_guard lock(lines_mutex_);
-  std::vector<LogLine> changed;
-  for (const std::uint64_t sequence : sequences) {
-    const auto line = std::ranges::find(lines_, sequence, &LogLine::sequence);
-    if (line != lines_.end() && !line->acknowledged) {
-      line->acknowledged = by;
-      changed.push_back(*line);
-    }
-  }
-  return changed;
-}
-
 std::uint64_t LogRing::last() const {
   const std::lock_guard lock(lines_mutex_);
   return last_;

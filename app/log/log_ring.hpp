@@ -18,14 +18,6 @@
 
 namespace interlock {
 
-/** That somebody has seen a line and answers for it. */
-struct Acknowledgement {
-  std::string user;
-  UtcTime time;
-
-  bool operator==(const Acknowledgement&) const = default;
-};
-
 /** One line as it was written. */
 struct LogLine {
   std::uint64_t sequence = 0; /**< from 1, without a gap */
@@ -34,7 +26,6 @@ struct LogLine {
   std::string text;
   std::uint64_t repeated =
       0; /**< how often the line before came again; such a line says so in its text too */
-  std::optional<Acknowledgement> acknowledged = std::nullopt; /**< the first one */
 
   bool operator==(const LogLine&) const = default;
 };
@@ -52,15 +43,6 @@ class LogRing {
 
   /** The lines with a number above `sequence` that are still kept, oldest first. */
   [[nodiscard]] std::vector<LogLine> after(std::uint64_t sequence) const;
-
-  /** The line of that number, if it is still kept. */
-  [[nodiscard]] std::optional<LogLine> find(std::uint64_t sequence) const;
-
-  /** Notes who has seen these lines. Left alone are lines that are no longer kept, and those that somebody
-   * has acknowledged before.
-   *
-   * @return the lines that changed, as they are now */
-  std::vector<LogLine> acknowledge(const std::vector<std::uint64_t>& sequences, const Acknowledgement& by);
 
   /** Number of the newest line; 0 when there was none. */
   [[nodiscard]] std::uint64_t last() const;

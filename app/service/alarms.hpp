@@ -15,7 +15,6 @@
 #include <string>
 #include <vector>
 
-#include "log/log_ring.hpp"
 #include "motion/realtime_channel.hpp"
 #include "proposals/proposal.hpp"
 #include "robot/robot.hpp"
@@ -40,6 +39,14 @@ struct AlarmCondition {
   std::vector<std::string> axes = {}; /**< names of those that it is about */
 
   bool operator==(const AlarmCondition&) const = default;
+};
+
+/** That somebody has seen an alarm and answers for it. */
+struct Acknowledgement {
+  std::string user;
+  UtcTime time;
+
+  bool operator==(const Acknowledgement&) const = default;
 };
 
 /** A condition from its begin on. */

@@ -161,31 +161,14 @@ test("the log tells what happens, from a chosen level on, and can be paused", as
   await expect(page.getByText("No line of this level yet.")).toBeVisible();
 });
 
-test("the log is searched, and who acknowledges a warning is told to everybody and audited", async ({
-  robot,
-  other,
-  page: browser,
-  stack,
-}) => {
-  await other.logIn("admin", stack.password);
-  // The button sends it on two ways, which may be two lines.
-  await browser.evaluate(() => fetch("/api/stop", { method: "POST" }));
+test("the log is searched", async ({ robot, page }) => {
+  await page.evaluate(() => fetch("/api/stop", { method: "POST" }));
   const log = robot.panel("Log");
-  const stopLine = (page: typeof robot) =>
-    page.panel("Log").getByRole("listitem").filter({ hasText: "STOP by admin" });
   await log.getByRole("searchbox", { name: "Search the log" }).fill("admin stop");
-  await expect(stopLine(robot)).toHaveCount(1);
+  await expect(log.getByRole("listitem").filter({ hasText: "STOP by admin" })).toHaveCount(1);
   await expect(log.getByRole("listitem")).toHaveCount(1);
-  await expect(log.getByRole("status", { name: "Lines to acknowledge" })).toHaveText("1 to acknowledge");
-  await robot.button("Acknowledge shown warnings and errors").click();
-  for (const page of [robot, other]) await expect(stopLine(page)).toContainText(/✓ admin \d/);
-  await expect(robot.button("Acknowledge shown warnings and errors")).toBeDisabled();
   await log.getByRole("searchbox").fill("no such words");
   await expect(log.getByText("No line has these words.")).toBeVisible();
-  await robot.open("Audit");
-  await expect(robot.panel("Audit").getByRole("row").filter({ hasText: "acknowledgement" })).toContainText(
-    "STOP by admin",
-  );
 });
 
 test("a pedal contact that sticks is seen as channels that disagree", async ({ robot }) => {

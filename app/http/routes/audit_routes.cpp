@@ -16,6 +16,8 @@ using nlohmann::json;
 
 constexpr std::int64_t default_records = 100;
 constexpr std::int64_t most_records = 1000;
+constexpr std::initializer_list<const char*> filter_fields{"records", "before", "kind",
+                                                           "actor",   "text",   "since"};
 
 bool is_hash(const std::string& text) {
   return text.size() == 64 && std::ranges::all_of(text, [](char each) {
@@ -49,12 +51,11 @@ AuditRoutes::AuditRoutes(const Context& context, Router& router) : context_(cont
 }
 
 Answering AuditRoutes::records(const Call& call) const {
-  constexpr std::initializer_list<const char*> names{"records", "before", "kind", "actor", "text", "since"};
-  const auto query = known_query(call.request, names);
+  const auto query = known_query(call.request, filter_fields);
   if (!query) {
     co_return fail(query.error());
   }
-  Fields fields(*query, names);
+  Fields fields(*query, filter_fields);
   const auto count = fields.integer("records", 1, most_records).value_or(default_records);
   AuditFilter filter{.before = fields.integer("before", 1, std::numeric_limits<std::int64_t>::max()),
                      .kind = fields.text("kind"),

@@ -317,8 +317,6 @@ export const api = {
   reach: () => read(() => slowHttp.GET("/api/targeting/reach")),
   logs: (lines: number) => read(() => http.GET("/api/logs", { params: { query: { lines } } })),
   setLogLevel: (level: LogLevel) => act(() => http.PUT("/api/logs", { body: { level } })),
-  acknowledgeLogs: (sequences: number[]) =>
-    act(() => http.POST("/api/logs/acknowledge", { body: { sequences } })),
   audit: (records: number, filter: AuditFilter = {}) =>
     read(() => http.GET("/api/audit", { params: { query: { records, ...filter } } })),
 

@@ -1115,26 +1115,6 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
-    "/api/logs/acknowledge": {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        get?: never;
-        put?: never;
-        /**
-         * Notes that the caller has seen these lines of level warning, error or critical and looks after them. The first who
-         *     acknowledges a line stays. The app keeps it with the line until it ends; the audit keeps it with the line's text.
-         */
-        post: operations["acknowledgeLogs"];
-        delete?: never;
-        options?: never;
-        head?: never;
-        patch?: never;
-        trace?: never;
-    };
     "/api/history": {
         parameters: {
             query?: never;
@@ -3036,19 +3016,10 @@ export interface components {
             text: string;
             /** @description How often the line before it came again right after it; such a line has that as its text too. */
             repeated: number;
-            /** @description Who has seen it first, and when; null as long as nobody has. */
-            acknowledged: {
-                user: string;
-                /** Format: date-time */
-                time: string;
-            } | null;
         };
         Logs: {
             level: components["schemas"]["LogLevel"];
             lines: components["schemas"]["LogLine"][];
-        };
-        LogAcknowledgement: {
-            sequences: number[];
         };
         LogLevelChange: {
             level: components["schemas"]["LogLevel"];
@@ -5139,36 +5110,6 @@ export interface operations {
             400: components["responses"]["Malformed"];
             401: components["responses"]["Login"];
             403: components["responses"]["Role"];
-            422: components["responses"]["Invalid"];
-            503: components["responses"]["NoStore"];
-        };
-    };
-    acknowledgeLogs: {
-        parameters: {
-            query?: never;
-            header?: never;
-            path?: never;
-            cookie?: never;
-        };
-        requestBody: {
-            content: {
-                "application/json": components["schemas"]["LogAcknowledgement"];
-            };
-        };
-        responses: {
-            /** @description Log with the lines that this acknowledged; without those that somebody had acknowledged before. */
-            200: {
-                headers: {
-                    [name: string]: unknown;
-                };
-                content: {
-                    "application/json": components["schemas"]["Logs"];
-                };
-            };
-            400: components["responses"]["Malformed"];
-            401: components["responses"]["Login"];
-            403: components["responses"]["Role"];
-            404: components["responses"]["NotFound"];
             422: components["responses"]["Invalid"];
             503: components["responses"]["NoStore"];
         };

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { LogLevel, LogLine } from "../api/client";
-import { atLeast, levels, MOST_LINES, matching, mergeLines, unanswered } from "./log";
+import { atLeast, levels, MOST_LINES, matching, mergeLines } from "./log";
 
 const line = (sequence: number, level: LogLevel = "info"): LogLine => ({
   sequence,
@@ -8,20 +8,12 @@ const line = (sequence: number, level: LogLevel = "info"): LogLine => ({
   time: "2026-01-01T00:00:00Z",
   text: `line ${sequence}`,
   repeated: 0,
-  acknowledged: null,
 });
 
 describe("mergeLines", () => {
   it("puts lines of the stream and of an answer in order, each once", () => {
     const merged = mergeLines([line(3), line(4)], [line(1), line(3), line(2)]);
     expect(merged.map(({ sequence }) => sequence)).toEqual([1, 2, 3, 4]);
-  });
-
-  // An answer that was asked for before came after the stream had told who acknowledged, and took it back.
-  it("keeps an acknowledgement that an older answer does not know", () => {
-    const told = { ...line(1, "warning"), acknowledged: { user: "admin", time: "2026-01-01T00:00:01Z" } };
-    expect(mergeLines([told], [line(1, "warning")])).toEqual([told]);
-    expect(mergeLines([line(1, "warning")], [told])).toEqual([told]);
   });
 
   it("keeps the newest lines when there are too many", () => {
@@ -45,7 +37,7 @@ describe("matching", () => {
   const lines = [
     { ...line(1, "warning"), text: "Card 3 is silent" },
     { ...line(2), text: "Card 3 is back" },
-    { ...line(3, "error"), acknowledged: { user: "ann", time: "2026-01-01T00:00:00Z" } },
+    line(3, "error"),
   ];
   it.each([
     ["", [1, 2, 3]],
@@ -53,18 +45,9 @@ describe("matching", () => {
     ["card 3", [1, 2]],
     ["SILENT card", [1]],
     ["warning", [1]],
-    ["ann", [3]],
+    ["error", [3]],
     ["card 4", []],
   ] as const)("%j finds %j", (words, found) => {
     expect(matching(lines, words).map(({ sequence }) => sequence)).toEqual(found);
-  });
-});
-
-describe("unanswered", () => {
-  it("has the warnings and worse that nobody acknowledged, and gives up what the stream tells again", () => {
-    const lines = levels.map((level, index) => line(index, level));
-    expect(unanswered(lines).map(({ level }) => level)).toEqual(["warning", "error", "critical"]);
-    const told = { ...line(3, "error"), acknowledged: { user: "ann", time: "2026-01-01T00:00:00Z" } };
-    expect(unanswered(mergeLines(lines, [told])).map(({ level }) => level)).toEqual(["warning", "critical"]);
   });
 });

@@ -6,17 +6,9 @@ export const MOST_LINES = 500;
 /** By rising weight. */
 export const levels: readonly LogLevel[] = ["debug", "info", "warning", "error", "critical"];
 
-/**
- * Both lists by rising sequence, each line once; the newest stay. Nobody takes an acknowledgement back, so a line
- * that has one is newer than the same line without, whichever came last.
- */
+/** Both lists by rising sequence, each line once; the newest stay. */
 export function mergeLines(known: readonly LogLine[], more: readonly LogLine[]): readonly LogLine[] {
-  const bySequence = new Map(known.map((line) => [line.sequence, line]));
-  for (const line of more) {
-    if (line.acknowledged !== null || !bySequence.get(line.sequence)?.acknowledged) {
-      bySequence.set(line.sequence, line);
-    }
-  }
+  const bySequence = new Map([...known, ...more].map((line) => [line.sequence, line]));
   return [...bySequence.values()].sort((a, b) => a.sequence - b.sequence).slice(-MOST_LINES);
 }
 
@@ -26,7 +18,7 @@ export function atLeast(lines: readonly LogLine[], level: LogLevel): readonly Lo
   return lines.filter((line) => levels.indexOf(line.level) >= least);
 }
 
-/** The lines whose text, level or acknowledging user has all of the words, in any order; all lines without a word. */
+/** The lines whose text or level has all of the words, in any order; all lines without a word. */
 export function matching(lines: readonly LogLine[], words: string): readonly LogLine[] {
   const wanted = words
     .toLowerCase()
@@ -34,12 +26,7 @@ export function matching(lines: readonly LogLine[], words: string): readonly Log
     .filter((word) => word !== "");
   if (wanted.length === 0) return lines;
   return lines.filter((line) => {
-    const said = `${line.level} ${line.text} ${line.acknowledged?.user ?? ""}`.toLowerCase();
+    const said = `${line.level} ${line.text}`.toLowerCase();
     return wanted.every((word) => said.includes(word));
   });
-}
-
-/** The lines that ask for somebody's attention and that nobody has acknowledged. */
-export function unanswered(lines: readonly LogLine[]): readonly LogLine[] {
-  return atLeast(lines, "warning").filter((line) => line.acknowledged === null);
 }

@@ -3,17 +3,14 @@ import { api, type LogLevel, type LogLine } from "../../api/client";
 import { CommandButton } from "../../design/CommandButton";
 import { NoticeText } from "../../design/NoticeText";
 import { Panel } from "../../design/Panel";
-import { atLeast, levels, matching, unanswered } from "../../state/log";
+import { atLeast, levels, matching } from "../../state/log";
 import { type Notice, noticeOfProblem } from "../../state/notice";
 import { useConsole } from "../../state/store";
 import { useReason } from "../../state/useReason";
-import { localDate, localTime } from "../../units/time";
+import { localTime } from "../../units/time";
 import "./log.css";
 
 const shapes: Record<LogLevel, string> = { debug: "·", info: "i", warning: "▲", error: "✕", critical: "⬣" };
-
-/** As many as the app takes in one request. */
-const MOST_AT_ONCE = 100;
 
 /** What the app says of itself, newest at the end. */
 export function LogPanel() {
@@ -21,13 +18,7 @@ export function LogPanel() {
   const [least, setLeast] = useState<LogLevel>("info");
   const [paused, setPaused] = useState<readonly LogLine[] | null>(null);
   const [words, setWords] = useState("");
-  const [notice, setNotice] = useState<Notice | null>(null);
-  const shown = matching(atLeast(paused === null ? lines : asNow(paused, lines), least), words);
-  const open = unanswered(shown).slice(-MOST_AT_ONCE);
-  const acknowledge = async (sequences: number[]): Promise<void> => {
-    const outcome = await api.acknowledgeLogs(sequences);
-    setNotice(outcome.ok ? null : noticeOfProblem(outcome.problem));
-  };
+  const shown = matching(atLeast(paused ?? lines, least), words);
   const newer = paused === null ? 0 : newerThan(paused, lines);
   return (
     <Panel
@@ -66,26 +57,11 @@ export function LogPanel() {
           value={words}
           onChange={(event) => setWords(event.target.value)}
         />
-        <output aria-label="Lines to acknowledge">{`${open.length} to acknowledge`}</output>
-        <CommandButton
-          need="engineer"
-          label="Acknowledge shown warnings and errors"
-          off={open.length === 0 ? "No warning or error is shown that waits for it." : null}
-          onCommand={() => acknowledge(open.map(({ sequence }) => sequence))}
-        >
-          Acknowledge shown
-        </CommandButton>
-        {notice !== null && (
-          <span className="tool-notice" role="alert">
-            <NoticeText lead="Refused:" notice={notice} />
-          </span>
-        )}
       </div>
       <Tail
         lines={shown}
         following={paused === null}
         emptyWords={words.trim() === "" ? "No line of this level yet." : "No line has these words."}
-        onAcknowledge={(sequence) => acknowledge([sequence])}
       />
     </Panel>
   );
@@ -96,21 +72,14 @@ function newerThan(paused: readonly LogLine[], lines: readonly LogLine[]): numbe
   return lines.filter((line) => line.sequence > last).length;
 }
 
-/** Lines that were kept back, with what became of them since. */
-function asNow(kept: readonly LogLine[], lines: readonly LogLine[]): readonly LogLine[] {
-  const bySequence = new Map(lines.map((line) => [line.sequence, line]));
-  return kept.map((line) => bySequence.get(line.sequence) ?? line);
-}
-
 interface TailProps {
   readonly lines: readonly LogLine[];
   readonly following: boolean;
   readonly emptyWords: string;
-  readonly onAcknowledge: (sequence: number) => Promise<void>;
 }
 
 /** Stays at the newest line while it follows. */
-function Tail({ lines, following, emptyWords, onAcknowledge }: TailProps) {
+function Tail({ lines, following, emptyWords }: TailProps) {
   const list = useRef<HTMLOListElement>(null);
   const last = lines.at(-1)?.sequence;
   useEffect(() => {
@@ -127,38 +96,9 @@ function Tail({ lines, following, emptyWords, onAcknowledge }: TailProps) {
             <i aria-hidden="true">{shapes[line.level]}</i> {line.level}
           </span>
           <span>{line.text}</span>
-          <Answered line={line} onAcknowledge={onAcknowledge} />
         </li>
       ))}
     </ol>
-  );
-}
-
-interface AnsweredProps {
-  readonly line: LogLine;
-  readonly onAcknowledge: (sequence: number) => Promise<void>;
-}
-
-/** Who has acknowledged a warning or worse, or the button that does. */
-function Answered({ line, onAcknowledge }: AnsweredProps) {
-  const { sequence, acknowledged } = line;
-  if (acknowledged !== null) {
-    return (
-      <span className="answered" title={`acknowledged ${localDate(acknowledged.time)}`}>
-        ✓ {acknowledged.user} {localTime(acknowledged.time)}
-      </span>
-    );
-  }
-  if (unanswered([line]).length === 0) return null;
-  return (
-    <CommandButton
-      need="engineer"
-      className="quiet small"
-      label={`Acknowledge line ${sequence}`}
-      onCommand={() => onAcknowledge(sequence)}
-    >
-      Acknowledge
-    </CommandButton>
   );
 }
 
