@@ -223,7 +223,7 @@ TEST_F(AuditTest, RecordForgedWithItsHashBreaksTheNextOne) {
   AuditRecord forged = list(3).at(0);
   ASSERT_EQ(forged.number, 3);
   forged.actor = "eve";
-  const std::string hash = audit_hash(forged, list(1, 3).at(0).hash);
+  const std::string hash = audit_hash(forged, list(1, {.before = 3}).at(0).hash);
   execute(std::string(drop_triggers) + "UPDATE audit SET actor = 'eve', hash = '" + hash +
           "' WHERE number = 3");
   expect_break(4, "does not belong behind the one before");
@@ -281,7 +281,7 @@ TEST_P(PartsOf, AChainBeginAnewWhenRecordsWereRetiredMeanwhile) {
   append(6);
   AuditCheck check;
   go_on(check);
-  const AuditRecord fifth = list(1, 6).at(0);
+  const AuditRecord fifth = list(1, {.before = 6}).at(0);
   commit(store_, [&](Transaction& transaction) {
     Audit(transaction)
         .retire({fifth.number, fifth.hash}, {.time = noon,
