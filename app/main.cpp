@@ -27,6 +27,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "build_info/build_info.hpp"
 #include "history/history_feed.hpp"
@@ -203,8 +204,9 @@ Stored<Store> open_store(const Options& options) {
   return store;
 }
 
-Stored<void> record_start(Store& store, const Model& model) {
-  return store.transact([&](Transaction& transaction) -> Stored<void> {
+/** Gives the runs that an earlier app left unfinished. */
+Stored<std::vector<std::int64_t>> record_start(Store& store, const Model& model) {
+  return store.transact([&](Transaction& transaction) -> Stored<std::vector<std::int64_t>> {
     nlohmann::json detail{{"version", version()},
                           {"commit", commit()},
                           {"robot", model.robot.name},
@@ -216,15 +218,24 @@ Stored<void> record_start(Store& store, const Model& model) {
     Audit(transaction)
         .append({std::chrono::system_clock::now(), std::nullopt, audit_actor::app, std::nullopt,
                  AuditKind::start, std::move(detail)});
-    return {};
+    return interrupted;
   });
 }
 
+struct BegunStore {
+  Store store;
+  std::vector<std::int64_t> interrupted; /**< runs that an earlier app left unfinished */
+};
+
 /** The store, with the record of this start in it before there is a log: a store without a record beside logs
  * is one that was emptied. */
-tl::expected<Store, std::string> begin_store(const Options& options, const Model& model) {
+tl::expected<BegunStore, std::string> begin_store(const Options& options, const Model& model) {
   return open_store(options)
-      .and_then([&](Store store) { return record_start(store, model).map([&] { return std::move(store); }); })
+      .and_then([&](Store store) {
+        return record_start(store, model).map([&](std::vector<std::int64_t> interrupted) {
+          return BegunStore{std::move(store), std::move(interrupted)};
+        });
+      })
       .map_error([&](const StoreError& error) {
         return "--state " + options.state_directory + ": " + error.message();
       });
@@ -335,7 +346,9 @@ boost::asio::awaitable<void> end_on_signal(RealtimeChannel& channel, std::functi
   std::_Exit(exit_failed);
 }
 
-tl::expected<void, std::string> serve(const Options& options, const Model& model, Store& store, Log& log) {
+tl::expected<void, std::string> serve(const Options& options, const Model& model, BegunStore& begun,
+                                      Log& log) {
+  Store& store = begun.store;
   auto manager = ServiceManager::connect();
   if (!manager) {
     return tl::make_unexpected(manager.error());
@@ -355,6 +368,9 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
   }
   if (const auto kept = read_holds(store); kept && *kept && !options.replay) {
     api.restore_holds((*kept)->value);
+  }
+  for (const std::int64_t run : begun.interrupted) {
+    api.alarms().note_ended_motion(run, "The app ended while it went on.");
   }
   web::Server server(door.get_executor(), executor, api, *channel,
                      web::StaticFiles(options.web_directory, options.docs_directory));
@@ -423,10 +439,10 @@ tl::expected<void, std::string> serve(const Options& options, const Model& model
 }
 
 /** While there is a log to hold the cause of an end that nobody expected. */
-int serve_and_log(const Options& options, const Model& model, Store& store, Log& log) {
+int serve_and_log(const Options& options, const Model& model, BegunStore& begun, Log& log) {
   try {
-    const auto served = serve(options, model, store, log);
-    if (const Stored<AuditHead> head = read_head(store); head && !options.recorder.empty()) {
+    const auto served = serve(options, model, begun, log);
+    if (const Stored<AuditHead> head = read_head(begun.store); head && !options.recorder.empty()) {
       report_head(options.recorder, *head);
     }
     if (!served) {

@@ -69,6 +69,9 @@ class Api {
   /** The motions that are kept. */
   [[nodiscard]] RunRecorder& runs() { return runs_; }
 
+  /** What asks somebody to act. */
+  [[nodiscard]] Alarms& alarms() { return alarms_; }
+
   /** The navigation programs; they come once its server listens and it was started. */
   [[nodiscard]] Navigation& navigation() { return navigation_; }
 

@@ -43,9 +43,11 @@ PathProgram pose_program(const Robot& robot, const Alignment& alignment, bool in
 /**
  * The program with a leg before each to positions, in which its axes go together to where their tools' play
  * is taken up on the way (`Axis::take_up_counts`): then each arrives from below, where kinematics hold. An
- * axis without play goes to its target with them; but the insertion, which goes with the last of them. No
- * such leg where the leg before leaves all of them below.
+ * axis without play goes to its target with them. No such leg where the leg before leaves all of them below.
+ *
+ * The insertion goes in last, and so from below. While it is `inserted`, only what moves along and about the
+ * probe takes its play up: the other axes would move it sideways for that.
  */
-PathProgram arriving_from_below(const Robot& robot, PathProgram program);
+PathProgram arriving_from_below(const Robot& robot, PathProgram program, bool inserted = false);
 
 }  // namespace interlock

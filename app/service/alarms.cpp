@@ -53,6 +53,8 @@ const char* layer_of_lock(std::uint32_t cause) {
       return "bus";
     case ILK_CAUSE_OVERRUN:
       return "computer";
+    case ILK_CAUSE_PEDAL:
+      return "pedal";
     default:
       return "axis";
   }
@@ -200,9 +202,12 @@ std::vector<AlarmCondition> Alarms::conditions(const ControlView& view, SteadyTi
   }
   const bool has_worse = std::ranges::any_of(
       found, [](const AlarmCondition& each) { return each.priority != AlarmPriority::low; });
-  if (has_worse) {
-    ended_motion_.reset();  // it ended by that
-  } else if (ended_motion_) {
+  // One that ends while something worse is there ended by that.
+  const bool is_new = std::exchange(motion_just_ended_, false);
+  if (is_new && has_worse) {
+    ended_motion_.reset();
+  }
+  if (ended_motion_) {
     found.push_back(*ended_motion_);
   }
   return found;
@@ -240,6 +245,10 @@ void Alarms::add_lock(std::vector<AlarmCondition>& found, const ilk_system_t& sy
   };
   if (system.mode == ILK_MODE_LOCKED) {
     add(system.cause);
+    if (system.cause == ILK_CAUSE_PEDAL && system.pedal != ILK_PEDAL_DISAGREE) {
+      found.back().text = "The pedal's channels disagreed, and agree again.";
+      found.back().next_step = "Press Unlock; if it comes again, replace the pedal.";
+    }
   }
   // What keeps a lock that another cause began. Channels disagree for a moment in each press.
   if (system.estop != 0 && with_code(found, "ESTOP") == nullptr) {
@@ -250,6 +259,15 @@ void Alarms::add_lock(std::vector<AlarmCondition>& found, const ilk_system_t& sy
   if (disagree_since_ && now - *disagree_since_ >= silence && with_code(found, "PEDAL") == nullptr) {
     add(ILK_CAUSE_PEDAL);
   }
+}
+
+/** Until its own fault is cleared, whichever of the others were before. */
+bool Alarms::was_lost_with_others(const std::string& axis) const {
+  const std::string bus = catalog::name(Family::cause, ILK_CAUSE_BUS);
+  return std::ranges::any_of(present_, [&](const Alarm& alarm) {
+    return alarm.condition.code == bus &&
+           std::ranges::find(alarm.condition.axes, axis) != alarm.condition.axes.end();
+  });
 }
 
 void Alarms::add_faults(std::vector<AlarmCondition>& found, const ilk_snapshot_t& snapshot) const {
@@ -280,7 +298,8 @@ void Alarms::add_faults(std::vector<AlarmCondition>& found, const ilk_snapshot_t
     if (now.fault == ILK_FAULT_NONE) {
       continue;
     }
-    const bool with_others = shared && is_of_card(now.fault) && near(now.fault_tick, *shared);
+    const bool with_others = is_of_card(now.fault) &&
+                             ((shared && near(now.fault_tick, *shared)) || was_lost_with_others(axis.name));
     const catalog::Entry& entry =
         with_others ? catalog::entry(Family::cause, ILK_CAUSE_BUS) : catalog::entry(Family::fault, now.fault);
     AlarmCondition* group = with_code(found, entry.name);
@@ -303,10 +322,11 @@ void Alarms::add_faults(std::vector<AlarmCondition>& found, const ilk_snapshot_t
     }
     if (group.code == catalog::name(Family::cause, ILK_CAUSE_BUS)) {
       group.text = listed(titles[place]) + ": cards were lost together, so hardly by a cable of one.";
-      group.next_step =
-          "Look at what they share: " +
-          std::string(snapshot.simulated != 0 ? "the simulator" : "power and cable of the card rack") +
-          ", and this computer. Then unlock, clear the faults, enable the axes and home them.";
+      const std::string share =
+          snapshot.simulated != 0 ? "the simulator" : "power and cable of the card rack";
+      group.next_step = "Look at what they share: " + share + ", and this computer. Then " +
+                        (system.mode == ILK_MODE_LOCKED ? "unlock, " : "") +
+                        "clear the faults, enable the axes and home them.";
       group.layer = snapshot.simulated != 0 ? "simulator" : "bus";
     } else {
       group.text = listed(titles[place]) + ": " + group.text;
@@ -322,13 +342,18 @@ void Alarms::follow(const Proposal& proposal) {
   if (proposal.state == ProposalState::executing) {
     ended_motion_.reset();
   } else if (ended && proposal.changed_by == audit_actor::app) {
-    ended_motion_ = {"MOTION",
-                     AlarmPriority::low,
-                     "axis",
-                     "Motion " + std::to_string(proposal.id) + " ended before its goal. " + proposal.detail,
-                     "Look at the robot; propose it again if it is still wanted.",
-                     proposal.axes};
+    note_ended_motion(proposal.id, proposal.detail, proposal.axes);
   }
+}
+
+void Alarms::note_ended_motion(std::int64_t number, const std::string& why, std::vector<std::string> axes) {
+  motion_just_ended_ = true;
+  ended_motion_ = {"MOTION",
+                   AlarmPriority::low,
+                   "axis",
+                   "Motion " + std::to_string(number) + " ended by itself. " + why,
+                   "Look at the robot; propose it again if it is still wanted.",
+                   std::move(axes)};
 }
 
 const Alarm* Alarms::find(std::uint32_t id) const {

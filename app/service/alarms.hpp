@@ -33,7 +33,7 @@ std::string_view alarm_priority_name(AlarmPriority priority) noexcept;
 struct AlarmCondition {
   std::string code; /**< "ESTOP", "STALL": of the catalog where it has one. One alarm has one code */
   AlarmPriority priority = AlarmPriority::low;
-  std::string layer; /**< where to look: person, axis, card, bus, computer, simulator or kernel */
+  std::string layer; /**< where to look: person, pedal, axis, card, bus, computer, simulator or kernel */
   std::string text;  /**< what is, a sentence or more */
   std::string next_step;
   std::vector<std::string> axes = {}; /**< names of those that it is about */
@@ -83,6 +83,9 @@ class Alarms {
    * somebody acknowledges it, or the next motion begins. */
   void follow(const Proposal& proposal);
 
+  /** The same of a motion of which only its number is known. */
+  void note_ended_motion(std::int64_t number, const std::string& why, std::vector<std::string> axes = {});
+
   /** Why the registration that was in force has expired; empty: one is in force, or none is needed. */
   void note_registration(std::string expired) { registration_expired_ = std::move(expired); }
 
@@ -106,6 +109,7 @@ class Alarms {
   [[nodiscard]] std::vector<AlarmCondition> conditions(const ControlView& view, SteadyTime now);
   void add_lock(std::vector<AlarmCondition>& found, const ilk_system_t& system, SteadyTime now);
   void add_faults(std::vector<AlarmCondition>& found, const ilk_snapshot_t& snapshot) const;
+  [[nodiscard]] bool was_lost_with_others(const std::string& axis) const;
   void add_computer(std::vector<AlarmCondition>& found, const ilk_snapshot_t& snapshot, SteadyTime now);
 
   const Robot& robot_;
@@ -115,6 +119,7 @@ class Alarms {
   std::uint32_t last_id_ = 0;
   std::string registration_expired_;
   std::optional<AlarmCondition> ended_motion_;
+  bool motion_just_ended_ = false;        /**< since the last look */
   std::optional<std::uint32_t> overruns_; /**< as last seen */
   std::optional<SteadyTime> late_;        /**< when this computer was last late */
   std::optional<SteadyTime> no_kernel_since_;

@@ -384,6 +384,11 @@ CaseAnswer resume_case(const Context& context, Caller caller, std::int64_t numbe
   auto resumed = co_await answer(context, std::move(taking));
   if (resumed) {
     put_in_force(context, number, caller.user);
+    const auto targeting = co_await present_targeting(context);
+    if (targeting && targeting->registration && !targeting->registration_problem.empty()) {
+      const std::string& kept = targeting->registration_expired;
+      context.alarms.note_registration(kept.empty() ? context.in_force.reason : kept);
+    }
   }
   co_return resumed;
 }

@@ -47,7 +47,8 @@ tl::expected<MoveLeg, Problem> ablation_leg_in(const Robot& robot, const json& s
 }
 
 tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const json& targets,
-                                              double minimum_duration_s, const std::string& author) {
+                                              double minimum_duration_s, bool inserted,
+                                              const std::string& author) {
   if (!targets.is_object() || targets.empty()) {
     return fail(invalid("targets", "targets name no axis", "an object of positions by axis, at least one"));
   }
@@ -67,7 +68,7 @@ tl::expected<Task, Problem> coordinated_draft(const Robot& robot, const json& ta
     }
     leg.targets.push_back({axis->slot, *counts});
   }
-  return task_of(RobotMode::coordinated, arriving_from_below(robot, {{std::move(leg)}}), author);
+  return task_of(RobotMode::coordinated, arriving_from_below(robot, {{std::move(leg)}}, inserted), author);
 }
 
 tl::expected<Task, Problem> ablation_draft(const Robot& robot, const json& steps, const std::string& author) {
@@ -85,17 +86,18 @@ tl::expected<Task, Problem> ablation_draft(const Robot& robot, const json& steps
     }
     legs.emplace_back(*leg);
   }
-  return task_of(ablation_mode, arriving_from_below(robot, {std::move(legs)}), author);
+  return task_of(ablation_mode, arriving_from_below(robot, {std::move(legs)}, true), author);
 }
 
-tl::expected<Task, Problem> coordinated_of(const json& body, const Robot& robot, const std::string& author) {
+tl::expected<Task, Problem> coordinated_of(const json& body, const Robot& robot, bool inserted,
+                                           const std::string& author) {
   Fields fields(body, {"kind", "targets", "duration_s"});
   fields.require({{"targets", "positions by axis"}});
   const double duration_s = fields.number("duration_s", 0.0, longest_move_s).value_or(0.0);
   if (fields.problem()) {
     return fail(*fields.problem());
   }
-  return coordinated_draft(robot, *fields.value("targets"), duration_s, author);
+  return coordinated_draft(robot, *fields.value("targets"), duration_s, inserted, author);
 }
 
 tl::expected<Task, Problem> ablation_of(const json& body, const Robot& robot, const std::string& author) {
@@ -261,8 +263,19 @@ DraftKind::Reading read_line(const Context& context, json body, std::string auth
   co_return task;
 }
 
+/** As it was seen last: a probe that is not all the way out may be in the patient. */
+bool is_inserted(const Context& context) {
+  const Axis* const insertion = context.robot.with_role("insertion");
+  if (insertion == nullptr) {
+    return false;
+  }
+  const std::int64_t out = std::int64_t{insertion->lowest_setpoint_counts()} +
+                           rest_tolerance_counts(context.config.axis[insertion->slot]);
+  return context.view().snapshot.state.axis[insertion->slot].position_counts > out;
+}
+
 DraftKind::Reading read_coordinated(const Context& context, json body, std::string author) {
-  co_return coordinated_of(body, context.robot, author);
+  co_return coordinated_of(body, context.robot, is_inserted(context), author);
 }
 
 /** 409 NOT_ALIGNED when one of the axes that a treatment does not move stands elsewhere than at its target.

@@ -109,10 +109,12 @@ TEST_F(AlarmsTest, OneEventOfTheBusIsOneAlarmFromItsLockToTheLastClearedFault) {
   ASSERT_THAT(codes(), ElementsAre("BUS")) << "unlocked, its faults are still there";
   EXPECT_EQ(alarms_.present().front().id, id);
   EXPECT_THAT(alarms_.present().front().condition.text, HasSubstr("lost together"));
+  EXPECT_THAT(alarms_.present().front().condition.next_step, testing::Not(HasSubstr("unlock")));
   for (const Axis& axis : test::neuro().axes) {
+    ASSERT_THAT(codes(), ElementsAre("BUS")) << "also of the last that is not cleared";
     fault(axis.slot, ILK_FAULT_NONE);
+    look();
   }
-  look();
   EXPECT_THAT(alarms_.present(), IsEmpty());
 }
 
@@ -219,8 +221,7 @@ TEST_F(AlarmsTest, AMotionThatEndsByItselfIsAnAlarmUntilSomebodyAcknowledgesItOr
   alarms_.follow(proposal);
   look();
   ASSERT_THAT(codes(), ElementsAre("MOTION"));
-  EXPECT_THAT(alarms_.present().front().condition.text,
-              HasSubstr("Motion 12 ended before its goal. An axis"));
+  EXPECT_THAT(alarms_.present().front().condition.text, HasSubstr("Motion 12 ended by itself. An axis"));
   alarms_.acknowledge(alarms_.present().front().id, {"ann", UtcTime{}});
   look();
   EXPECT_THAT(codes(), IsEmpty());
@@ -236,6 +237,24 @@ TEST_F(AlarmsTest, AMotionThatEndsByItselfIsAnAlarmUntilSomebodyAcknowledgesItOr
   fault(0, ILK_FAULT_STALL);
   look();
   EXPECT_THAT(codes(), ElementsAre("STALL")) << "which says why it ended";
+}
+
+TEST_F(AlarmsTest, AMotionThatEndedStaysAnAlarmWhateverComesAfterIt) {
+  alarms_.note_ended_motion(12, "The app ended while it went on.");
+  look();
+  lock(ILK_CAUSE_BUS);
+  look();
+  EXPECT_THAT(codes(), ElementsAre("BUS", "MOTION"));
+  system().mode = ILK_MODE_READY;
+  look();
+  EXPECT_THAT(codes(), ElementsAre("MOTION"));
+}
+
+TEST_F(AlarmsTest, WhoUnlocksIsToldOnceThePedalsChannelsAgreeAgain) {
+  lock(ILK_CAUSE_PEDAL);
+  look();
+  EXPECT_THAT(alarms_.present().front().condition.next_step, HasSubstr("Press Unlock"));
+  EXPECT_EQ(alarms_.present().front().condition.layer, "pedal");
 }
 
 TEST_F(AlarmsTest, AnExpiredRegistrationIsAnAlarmUntilOneIsSet) {

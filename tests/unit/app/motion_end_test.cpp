@@ -267,6 +267,22 @@ TEST(MotionEnd, AxesGoTogetherToWhereThePlayOfSomeIsTakenUpAndTheInsertionGoesLa
   EXPECT_EQ(std::get<MoveLeg>(program.legs[1]).targets, leg.targets);
 }
 
+TEST(MotionEnd, NothingGoesAsideForTheSakeOfPlayWhileTheProbeIsInserted) {
+  Robot robot = neuro();
+  for (Axis& axis : robot.axes) {
+    axis.mechanics.tool_play_counts = 20;
+  }
+  const MoveLeg leg{{{0, -300}, {test::rotation, 100}, {test::insertion, 500}}, 0.0, 0.0};
+  const PathProgram program = arriving_from_below(robot, {{leg}}, true);
+  ASSERT_EQ(program.legs.size(), 2u);
+  std::vector<std::uint32_t> slots;
+  for (const AxisCounts& target : std::get<MoveLeg>(program.legs[0]).targets) {
+    slots.push_back(target.slot);
+  }
+  EXPECT_EQ(slots, (std::vector<std::uint32_t>{test::rotation, test::insertion}));
+  EXPECT_EQ(std::get<MoveLeg>(program.legs[1]).targets, leg.targets);
+}
+
 TEST(MotionEnd, OnlyALegThatMayComeFromAboveGoesBelowFirst) {
   Robot robot = neuro();
   Axis& yaw = *std::ranges::find(robot.axes, "yaw", &Axis::name);

@@ -216,8 +216,11 @@ TEST(Identification, WhatCannotBeMeasuredIsSaid) {
   EXPECT_EQ(identify(robot, compile(robot).value(), shipped_plant(robot), "elbow", 1).error(),
             "neuro has no axis \"elbow\"");
   const Axis& yaw = *robot.find("yaw");
-  EXPECT_EQ(identified(robot, yaw, plant_with(robot, yaw, {0.6, 1000, 5000, 1})).error(),
-            "the axis faulted: STALL, before the first move");
+  EXPECT_EQ(
+      identified(robot, yaw, plant_with(robot, yaw, {0.6, 1000, 5000, 1})).error(),
+      "the axis faulted: STALL, before the first move, with dead zones up to a fifth of drive.max as well: "
+      "more than that no file may state. Look at what holds the axis, at its motor's supply and its encoder, "
+      "and at drive.max");
   const Axis& feet = *robot.find("feet");
   EXPECT_EQ(
       identified(robot, feet, plant_with(robot, feet, {0.015, 200, 5000, 20})).error(),

@@ -710,7 +710,7 @@ export interface paths {
         };
         get?: never;
         put?: never;
-        /** Answers for an alarm. It stays for as long as its condition lasts; that of a motion which ended before its goal goes. Audited. One that somebody has acknowledged, or that is over, stays as it is. */
+        /** Answers for an alarm. It stays for as long as its condition lasts; that of a motion which ended by itself goes. Audited. One that somebody has acknowledged, or that is over, stays as it is. */
         post: operations["acknowledgeAlarm"];
         delete?: never;
         options?: never;
@@ -1973,7 +1973,7 @@ export interface components {
         Alarm: {
             /** @description From 1 on since the app was started. */
             id: number;
-            /** @description Of the catalog: a cause of LOCKED, a fault of an axis, or INIT; or NO_KERNEL, SILENT (nothing new for a second), LATE (this computer is too busy), REGISTRATION (it has expired), MOTION (one ended before its goal). */
+            /** @description Of the catalog: a cause of LOCKED, a fault of an axis, or INIT; or NO_KERNEL, SILENT (nothing new for a second), LATE (this computer is too busy), REGISTRATION (it has expired), MOTION (one ended by itself, or with the app). */
             code: string;
             /**
              * @description After IEC 60601-1-8. high: act at once; medium: act soon; low: know of it.
@@ -1984,7 +1984,7 @@ export interface components {
              * @description Where to look.
              * @enum {string}
              */
-            layer: "person" | "axis" | "card" | "bus" | "computer" | "simulator" | "kernel";
+            layer: "person" | "pedal" | "axis" | "card" | "bus" | "computer" | "simulator" | "kernel";
             /** @description What is, for people. */
             text: string;
             next_step: string;
@@ -4507,7 +4507,7 @@ export interface operations {
                 kind?: string;
                 /** @description Only those that moved the axis of that name. */
                 axis?: string;
-                /** @description Only those that began then or later. */
+                /** @description Only those that began then or later: as the app writes times, 2026-01-31T08:00:00.000Z. */
                 since?: string;
                 /** @description Only runs before this number. */
                 before?: number;
@@ -5188,7 +5188,7 @@ export interface operations {
                 actor?: string;
                 /** @description Only records whose detail, as JSON, has that text, in capitals or not. */
                 text?: string;
-                /** @description Only records of then or later. */
+                /** @description Only records of then or later: as the app writes times, 2026-01-31T08:00:00.000Z. */
                 since?: string;
             };
             header?: never;

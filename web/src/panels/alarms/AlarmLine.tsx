@@ -1,7 +1,8 @@
-import { useState } from "react";
+import { useEffect, useState } from "react";
 import type { Alarm } from "../../api/client";
 import { AlarmSign } from "../../design/AlarmSign";
 import { allowSound } from "../../state/announce";
+import { useRoute } from "../../state/route";
 import { useConsole } from "../../state/store";
 import type { Glance } from "../../stream/decode";
 import { AlsoSeen, ModeStrip } from "../header/ModeStrip";
@@ -15,6 +16,10 @@ export function AlarmLine({ glance }: { readonly glance: Glance | null }) {
   const alarms = useConsole((state) => state.alarms);
   const loggedIn = useConsole((state) => state.login.phase === "in");
   const [shown, setShown] = useState(false);
+  const route = useRoute();
+  const stops = useConsole((state) => state.stops);
+  // biome-ignore lint/correctness/useExhaustiveDependencies: another page, and Esc, which is STOP, close the list
+  useEffect(() => setShown(false), [route, stops]);
   const worst = glance === null ? undefined : alarms[0];
   const urgent = worst !== undefined && worst.priority !== "low";
   const toggle = (): void => {

@@ -9,6 +9,7 @@ import { AlarmWords } from "./AlarmWords";
 
 const layerWords: Readonly<Record<Alarm["layer"], string>> = {
   person: "a person's doing",
+  pedal: "the pedal",
   axis: "the axis",
   card: "the card",
   bus: "the bus",

@@ -149,7 +149,8 @@ function Pedal({ glance }: { readonly glance: Glance | null }) {
   );
 }
 
-function armedWords({ power, pedalArmed }: Glance): string {
+function armedWords({ power, pedalArmed, mode }: Glance): string {
+  if (mode === "MOTION") return "held";
   if (power === "coming_up") return "power coming up";
   return pedalArmed ? "armed" : "not armed";
 }
