@@ -241,8 +241,11 @@ export class ConsolePage {
   }
 
   /** Of a proposal that waits for that. */
+  /** Ends once it is approved: a press that comes before waits for another one. */
   async approve(id: number): Promise<void> {
-    await this.button(`Approve proposal ${id}`).click();
+    const approve = this.button(`Approve proposal ${id}`);
+    await approve.click();
+    await expect(approve).toHaveCount(0);
   }
 
   proposal(id: number): Locator {
