@@ -243,6 +243,7 @@ test.describe("as impatient as it is", () => {
     stack.signalApp("SIGSTOP");
     try {
       const frames = await shown;
+      await expect(robot.button("Alarms unknown")).toBeVisible();
       for (const { level, age, header } of frames) {
         const ageMs = age.endsWith(" ms") ? Number.parseInt(age, 10) : 1000 * Number.parseFloat(age);
         // An age that is shown as a bound was rounded to it from either side.

@@ -44,7 +44,7 @@ export function AlarmLine({ glance }: { readonly glance: Glance | null }) {
           aria-controls="alarm-list"
           onClick={toggle}
         >
-          <Count alarms={alarms} />
+          {glance === null ? "Alarms unknown" : <Count alarms={alarms} />}
         </button>
       )}
       {loggedIn && shown && <AlarmList alarms={alarms} />}
