@@ -79,7 +79,7 @@ class Alarms {
   /** Looks at the newest view. The alarms that have begun, ended or changed since the last look. */
   std::vector<Alarm> see(const ControlView& view, SteadyTime now, UtcTime time);
 
-  /** To be told of each change of a proposal: one that ended against everybody's will is an alarm until
+  /** Sees each change of a proposal: one that ended against everybody's will is an alarm until
    * somebody acknowledges it, or the next motion begins. */
   void follow(const Proposal& proposal);
 

@@ -38,7 +38,7 @@ class RunRecorder {
   /** The context must outlive it. */
   explicit RunRecorder(const Context& context) : context_(context) {}
 
-  /** To be told of each change of a proposal. */
+  /** Sees each change of a proposal. */
   void follow(const Proposal& proposal);
 
   /** To be given each bucket of the decimated past, in order. */

@@ -85,7 +85,7 @@ export function setSound(on: boolean): void {
   sound(open(useConsole.getState().alarms));
 }
 
-/** To be called when somebody presses something: from then on a page that was loaded anew may be heard. */
+/** To be called when somebody presses something: before that, a browser plays nothing on a page that was loaded anew. */
 export function allowSound(): void {
   if (!wantsSound()) return;
   context ??= new AudioContext();
